@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <set>
 #include <span>
 #include <string>
@@ -127,6 +128,28 @@ TEST(Med, FollowsCellsThatAreLeftOut) {
   EXPECT_EQ(read.cells, volumes.cells);
   EXPECT_EQ(find_array(read, "owner", Association::cells), nullptr);
   EXPECT_NE(find_array(read, "u step 2", Association::vertices), nullptr);
+}
+
+TEST(Med, GroupsCellsThatAProgramHasMixed) {
+  // the vertices and the value of each cell
+  const auto cells_of = [](const Mesh& mesh) {
+    std::set<std::pair<std::vector<Index>, double>> cells;
+    const auto& values = std::get<std::vector<double>>(find_array(mesh, "x", Association::cells)->values);
+    for (Index c = 0; c < mesh.cell_count(); ++c) {
+      cells.insert({{mesh.cells[c].begin(), mesh.cells[c].end()}, values[static_cast<std::size_t>(c)]});
+    }
+    return cells;
+  };
+  Mesh mesh = test::mixed_mesh();
+  std::vector<double> values(mesh.cells.shapes.size());
+  std::iota(values.begin(), values.end(), 0.0);
+  mesh.data = {{"x", Association::cells, 1, std::move(values), {}, {}}};
+  mesh = through_med(mesh);
+  mesh.cell_blocks.clear();
+  apply_reordering(mesh, Permutation::identity(mesh.vertex_count()), test::shuffled_cells(mesh, 1));
+  const Mesh read = through_med(mesh);
+  EXPECT_NE(read.cells, mesh.cells);
+  EXPECT_EQ(cells_of(read), cells_of(mesh));
 }
 
 TEST(Med, NamesThatAreTooLongAreCutWithANote) {

@@ -185,7 +185,7 @@ class FamilyWriter {
     const MedLayout& layout = writing_.layout;
     std::vector<std::int64_t> none(item_count(writing_.mesh, association_), 0);
     if (layout.is_made) return none;
-    (void)writing_.take(layout.families_array, association_);
+    writing_.placed.insert(find_array(writing_.mesh, layout.families_array, association_));
     return numbers_in(writing_.mesh, layout.families_array, association_);
   }
 
@@ -270,7 +270,7 @@ class FamilyWriter {
     const std::string path = root + "/" + name;
     file.make_group(path + "/GRO");
     file.set_attribute(path, "NUM", number);
-    file.set_attribute(path + "/GRO", "NBR", static_cast<std::int64_t>(groups.size()));
+    file.set_attribute(path + "/GRO", "NBR", std::int64_t{std::ssize(groups)});
     file.write_texts(path + "/GRO/NOM", groups, kLongestGroup);
     return number;
   }

@@ -40,19 +40,6 @@ std::vector<std::string> short_names(const std::string& text, std::size_t count)
   return any ? names : std::vector<std::string>();
 }
 
-/// Sorts the rows of an array by item; `items` has the vertex or cell of each row.
-void sort_rows(DataArray& array, std::vector<Index> items, Index count) {
-  if (!std::is_sorted(items.begin(), items.end())) {
-    std::vector<Index> order = index_range(0, index_size(items));
-    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-      return items[static_cast<std::size_t>(a)] < items[static_cast<std::size_t>(b)];
-    });
-    array.values = rows_of_values(array.values, array.components, order);
-    std::sort(items.begin(), items.end());
-  }
-  if (index_size(items) < count) array.indices = std::move(items);
-}
-
 class FieldReader {
  public:
   FieldReader(Reading& reading, FieldInfo field) : reading_(reading), field_(std::move(field)) {}
@@ -64,8 +51,7 @@ class FieldReader {
  private:
   /// An array of a step while its pieces are read.
   struct Gathered {
-    DataArray array;
-    std::vector<Index> items;
+    DataArray array;                  // its indices are the vertices or cells of the rows, in any order
     std::vector<std::size_t> pieces;  // places in the layout
   };
 
@@ -81,7 +67,10 @@ class FieldReader {
         if (reading_.file.has(support)) read_support(support, &type, prefix == "NOE.");
       }
     }
-    for (Gathered& gathered : gathered_) finish(gathered);
+    for (Gathered& gathered : gathered_) {
+      const std::string name = reading_.add_array(std::move(gathered.array));
+      for (const std::size_t piece : gathered.pieces) reading_.layout->pieces[piece].array = name;
+    }
   }
 
   void read_support(const std::string& support, const GeometryType* type, bool at_nodes) {
@@ -102,22 +91,20 @@ class FieldReader {
 
   /// Returns the vertices or cells of a piece's profile.
   std::vector<Index> items_of(const Piece& piece) {
-    const auto [first, count] = reading_.range(piece.type);
-    if (piece.profile == kNoProfile) {
-      return index_range(first, count);
-    }
+    const auto [first, count] = range_in(reading_.ranges, piece.type);
+    if (piece.profile == kNoProfile) return index_range(first, count);
     const std::string path = profile_path(piece.profile);
     reading_.take(path);
     std::vector<Index> items = reading_.file.read_indices(path);
     std::vector<bool> seen(static_cast<std::size_t>(count), false);
     for (Index& item : items) {
-      if (item < 1 || item > count || seen[static_cast<std::size_t>(item) - 1]) {
+      if (item < 1 || item > count || seen[item - 1]) {
         reading_.fail(path,
                       fmt::format("names item {}, which {}", item,
                                   item < 1 || item > count ? "does not exist" : "it has already named"),
                       fmt::format("'{}' has values for 1 to {}", piece.support, count));
       }
-      seen[static_cast<std::size_t>(item) - 1] = true;
+      seen[item - 1] = true;
       item += first - 1;
     }
     return items;
@@ -135,10 +122,8 @@ class FieldReader {
                       row / piece.components == static_cast<std::uint64_t>(points) &&
                       row <= static_cast<std::uint64_t>(kMaxIndex);
     if (!fits) {
-      reading_.fail(path,
-                    fmt::format("has {} values, not {} components × {} points × {} items", size,
-                                piece.components, points, items.size()),
-                    "the file may be damaged");
+      reading_.fail(path, fmt::format("has {} values, not {} components × {} points × {} items", size,
+                                      piece.components, points, items.size()));
     }
     piece.points = static_cast<std::size_t>(points);
     piece.counts_profile = reading_.file.integer_attribute(group, "NBR") == index_size(items);
@@ -154,11 +139,8 @@ class FieldReader {
     Values values = reading_.file.read(path);
     Gathered& gathered = array_for(name + suffix_, piece, values);
     append(gathered.array, std::move(values), piece, items.size());
-    if (gathered.items.empty()) {
-      gathered.items = std::move(items);
-    } else {
-      gathered.items.insert(gathered.items.end(), items.begin(), items.end());
-    }
+    std::vector<Index>& indices = gathered.array.indices;
+    indices.insert(indices.end(), items.begin(), items.end());
     gathered.pieces.push_back(reading_.layout->pieces.size());
     reading_.layout->pieces.push_back(std::move(piece));
   }
@@ -174,14 +156,14 @@ class FieldReader {
     if (found != gathered_.end()) return *found;
     Gathered& made = gathered_.emplace_back();
     made.array = {.name = name, .association = association, .components = components};
-    std::visit([&](const auto& numbers) { made.array.values = std::decay_t<decltype(numbers)>(); }, values);
+    made.array.values = values_of_type(values.index());
     if (piece.points == 1) made.array.component_names = field_.component_names;
     return made;
   }
 
   /// Appends the values of a piece as rows.
   void append(DataArray& array, Values values, const Piece& piece, std::size_t rows) const {
-    const std::span<const int> order = order_of_points(piece);
+    const std::span<const int> order = reading_.layout->order_of_points(piece);
     std::visit(
         [&](auto& numbers) {
           auto& target = std::get<std::decay_t<decltype(numbers)>>(array.values);
@@ -211,20 +193,6 @@ class FieldReader {
         values);
   }
 
-  [[nodiscard]] std::span<const int> order_of_points(const Piece& piece) const {
-    const bool by_node = piece.at_nodes && !reading_.layout->in_mesh_order &&
-                         piece.points == static_cast<std::size_t>(piece.type->nodes);
-    return by_node ? mesh_order(*piece.type) : std::span<const int>();
-  }
-
-  void finish(Gathered& gathered) {
-    const bool on_vertices = gathered.array.association == Association::vertices;
-    const Index count = on_vertices ? reading_.mesh.vertex_count() : reading_.mesh.cell_count();
-    sort_rows(gathered.array, std::move(gathered.items), count);
-    const std::string name = reading_.add_array(std::move(gathered.array));
-    for (const std::size_t piece : gathered.pieces) reading_.layout->pieces[piece].array = name;
-  }
-
   Reading& reading_;
   FieldInfo field_;
   std::string suffix_;
@@ -240,20 +208,16 @@ FieldInfo field_of(const Reading& reading, const std::string& name) {
   }
   const auto components = file.integer_attribute(field.path, "NCO").value_or(1);
   if (components < 1 || components > kMaxIndex) {
-    reading.fail(field.path, fmt::format("has {} components", components), "the file may be damaged");
+    reading.fail(field.path, fmt::format("has {} components", components));
   }
   field.components = static_cast<std::size_t>(components);
-  field.steps = file.names(field.path);
-  const auto number_of = [&](const std::string& step) {
+  std::set<std::tuple<std::int64_t, std::int64_t, std::string>> steps;
+  for (const std::string& step : file.names(field.path)) {
     const std::string path = field.path + "/" + step;
-    return std::tuple(file.integer_attribute(path, "NDT").value_or(-1),
-                      file.integer_attribute(path, "NOR").value_or(-1), step);
-  };
-  std::vector<std::tuple<std::int64_t, std::int64_t, std::string>> numbers;
-  for (const std::string& step : field.steps) numbers.push_back(number_of(step));
-  std::sort(numbers.begin(), numbers.end());
-  std::transform(numbers.begin(), numbers.end(), field.steps.begin(),
-                 [](const auto& number) { return std::get<std::string>(number); });
+    steps.emplace(file.integer_attribute(path, "NDT").value_or(-1),
+                  file.integer_attribute(path, "NOR").value_or(-1), step);
+  }
+  for (const auto& [number, order, step] : steps) field.steps.push_back(step);
   // one component needs no name
   const std::string names = file.text_attribute(field.path, "NOM").value_or("");
   if (components > 1 && field.components <= names.size() / kShortName + 1)

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
 #include "base/text.hpp"
+#include "io/exact_values.hpp"
 #include "io/med/med.hpp"
 #include "io/names.hpp"
 #include "mesh/values.hpp"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
 #include <optional>
 #include <type_traits>
 #include <variant>
@@ -19,14 +19,14 @@
 namespace meshorder::med {
 namespace {
 
-/// Numbers of the types of values: attribute TYP of a field.
-constexpr std::int64_t kReals = 6;
-constexpr std::int64_t kIntegers = 24;
-constexpr std::int64_t kLongIntegers = 26;
-
-bool is_text_array(const DataArray& array) {
-  return std::holds_alternative<std::vector<std::string>>(array.values);
-}
+/// A type of values of new fields.
+struct ValueType {
+  std::int64_t number;      ///< attribute TYP of a field
+  std::size_t alternative;  ///< of Values
+};
+constexpr ValueType kReals{6, 0};
+constexpr ValueType kIntegers{24, 6};
+constexpr ValueType kLongIntegers{26, 8};
 
 /// Returns a name, changed if HDF5 or MED would not allow it.
 std::string clean_name(const std::string& given) {
@@ -65,13 +65,11 @@ class Profiles {
       const std::string number = fmt::format("_{}", k);
       name = std::string(utf8_prefix(clean, kLongestName - number.size())) + number;
     }
-    std::vector<std::int64_t> numbers(places.begin(), places.end());
-    for (std::int64_t& number : numbers) ++number;
-    const std::string path = profile_path(name);
+    std::vector<Index> numbers = places;
+    for (Index& number : numbers) ++number;
     writing_.file.make_group("/PROFILS/" + name);
-    writing_.file.set_attribute("/PROFILS/" + name, "NBR", static_cast<std::int64_t>(numbers.size()));
-    const std::vector<std::int32_t> values(numbers.begin(), numbers.end());
-    writing_.file.write(path, Values(values), {values.size()});
+    writing_.file.set_attribute("/PROFILS/" + name, "NBR", std::int64_t{std::ssize(numbers)});
+    writing_.file.write(profile_path(name), std::span<const Index>(numbers), {numbers.size()});
     written_.emplace(name, places);
     return name;
   }
@@ -114,7 +112,7 @@ class FieldWriter {
 
   void write() {
     for (const Piece& piece : writing_.layout.pieces) write_piece(piece);
-    for (const std::string& name : writing_.file.names("/CHA")) names_.insert(name);
+    for (const std::string& name : writing_.file.names("/CHA")) (void)names_.take(name);
     write_new_fields();
     profiles_.remove_unused();
     if (!writing_.file.has("/CHA")) writing_.file.make_group("/CHA");
@@ -122,66 +120,58 @@ class FieldWriter {
 
  private:
   [[nodiscard]] std::size_t items_of(const GeometryType* type) const {
-    if (type == nullptr) return writing_.mesh.points.size();
-    const auto found = writing_.cells.find(type);
-    return found == writing_.cells.end() ? 0 : found->second.size();
+    return static_cast<std::size_t>(range_in(writing_.ranges, type).count);
   }
 
   /// Returns the rows that an array has for vertices or for the cells of a type.
   Rows rows_of(const DataArray& array, const GeometryType* type) {
     if (last_array_ != &array) {
-      const bool on_vertices = array.association == Association::vertices;
-      table_ = rows_by_item(array, on_vertices ? writing_.mesh.vertex_count() : writing_.mesh.cell_count());
+      table_ = rows_by_item(array, item_count(writing_.mesh, array.association));
       last_array_ = &array;
     }
     Rows result;
-    const std::size_t count = items_of(type);
-    result.places.reserve(count);
-    result.rows.reserve(count);
-    const std::vector<Index>* const cells =
-        type == nullptr || count == 0 ? nullptr : &writing_.cells.at(type);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Index item = cells == nullptr ? static_cast<Index>(i) : (*cells)[i];
-      const Index row = table_.empty() ? item : table_[static_cast<std::size_t>(item)];
+    const auto [first, count] = range_in(writing_.ranges, type);
+    result.places.reserve(items_of(type));
+    result.rows.reserve(items_of(type));
+    for (Index i = 0; i < count; ++i) {
+      const Index row = table_.empty() ? first + i : table_[first + i];
       if (row < 0) continue;
-      result.places.push_back(static_cast<Index>(i));
+      result.places.push_back(i);
       result.rows.push_back(row);
     }
     return result;
   }
 
-  /// Returns the place of each point of a cell in the rows of an array.
-  [[nodiscard]] std::span<const int> order_of_points(const Piece& piece) const {
-    const bool by_node = piece.at_nodes && !writing_.layout.in_mesh_order &&
-                         piece.points == static_cast<std::size_t>(piece.type->nodes);
-    return by_node ? mesh_order(*piece.type) : std::span<const int>();
-  }
-
-  /// Returns the values of some rows in the order of the file, as numbers of one type.
-  template <class Number>
-  [[nodiscard]] std::vector<Number> values_of(const DataArray& array, const Rows& rows,
-                                              const Piece& piece) const {
-    const std::span<const int> order = order_of_points(piece);
+  /// Returns the values of some rows in the order of the file, as numbers of an alternative of Values.
+  [[nodiscard]] Values values_of(const DataArray& array, const Rows& rows, const Piece& piece,
+                                 std::size_t alternative) const {
+    const std::span<const int> order = writing_.layout.order_of_points(piece);
     const std::size_t width = piece.points * piece.components;
-    std::vector<Number> result;
-    result.reserve(rows.rows.size() * width);
-    with_numbers(array.values, [&](const auto& values) {
-      for (std::size_t c = 0; c < piece.components; ++c) {
-        if (piece.points == 1 && order.empty()) {
-          for (const Index row : rows.rows)
-            result.push_back(static_cast<Number>(values[static_cast<std::size_t>(row) * width + c]));
-          continue;
-        }
-        for (const Index row : rows.rows) {
-          for (std::size_t p = 0; p < piece.points; ++p) {
-            const std::size_t place = order.empty() ? p : static_cast<std::size_t>(order[p]);
-            const std::size_t from = static_cast<std::size_t>(row) * width + place * piece.components + c;
-            result.push_back(static_cast<Number>(values[from]));
+    return values_of_type(alternative, [&]<class Number>(std::vector<Number>& result) {
+      if constexpr (std::is_arithmetic_v<Number>) {
+        result.reserve(rows.rows.size() * width);
+        with_numbers(array.values, [&](const auto& values) {
+          for (std::size_t c = 0; c < piece.components; ++c) {
+            for (const Index row : rows.rows) {
+              const auto* const of_row = values.data() + row * width + c;
+              for (std::size_t p = 0; p < piece.points; ++p) {
+                const std::size_t place = order.empty() ? p : static_cast<std::size_t>(order[p]);
+                result.push_back(static_cast<Number>(of_row[place * piece.components]));
+              }
+            }
           }
-        }
+        });
       }
     });
-    return result;
+  }
+
+  /// Returns the profile of a piece with these rows: `old` if it was one already or is not needed.
+  std::string profile_for(const std::string& old, const Rows& rows, const Piece& piece) {
+    if (old != kNoProfile) return profiles_.name_for(old, rows.places);
+    if (rows.rows.size() == items_of(piece.type)) return old;
+    const std::string suffix = fmt::format("_{}", piece.type == nullptr ? "NOE" : piece.type->name);
+    return profiles_.name_for(std::string(utf8_prefix(piece.field, kLongestName - suffix.size())) + suffix,
+                              rows.places);
   }
 
   // ---- fields of the file
@@ -191,25 +181,17 @@ class FieldWriter {
     const DataArray* const array = find_array(writing_.mesh, piece.array, association);
     const std::string group = piece.support + "/" + piece.profile;
     const std::string path = group + "/CO";
-    if (array == nullptr || is_text_array(*array) ||
-        static_cast<std::size_t>(array->components) != piece.components * piece.points ||
+    if (array == nullptr || are_texts(array->values) ||
+        std::cmp_not_equal(array->components, piece.components * piece.points) ||
         array->values.index() != writing_.file.number_type(path)) {
       return remove_piece(piece);
     }
     writing_.placed.insert(array);
     const Rows rows = rows_of(*array, piece.type);
     if (rows.rows.empty()) return remove_piece(piece);
-    const bool is_whole = rows.rows.size() == items_of(piece.type);
-    std::string profile = piece.profile;
-    if (profile != kNoProfile) {
-      profile = profiles_.name_for(profile, rows.places);
-    } else if (!is_whole) {
-      profile = profiles_.name_for(profile_name(piece.field, piece.type), rows.places);
-    }
-    with_numbers(array->values, [&]<class Value>(const std::vector<Value>& /*values*/) {
-      const std::vector<Value> of_file = values_of<Value>(*array, rows, piece);
-      writing_.file.write(path, Values(of_file), {of_file.size()});
-    });
+    const std::string profile = profile_for(piece.profile, rows, piece);
+    const Values values = values_of(*array, rows, piece, array->values.index());
+    writing_.file.write(path, values, {size_of(values)});
     const std::size_t count = piece.counts_profile ? rows.rows.size() : items_of(piece.type);
     writing_.file.set_attribute(group, "NBR", static_cast<std::int64_t>(count));
     if (profile == piece.profile) return;
@@ -246,8 +228,7 @@ class FieldWriter {
         continue;
       }
       const std::vector<Step>& steps = series[{array.association, step->first}];
-      const bool is_series = are_steps(steps);
-      if (!is_series) {
+      if (!are_steps(steps)) {
         write_field(array.name, {{&array, 0}});
       } else if (steps.front().array == &array) {
         write_field(step->first, steps);
@@ -256,7 +237,7 @@ class FieldWriter {
   }
 
   [[nodiscard]] bool is_new(const DataArray& array) const {
-    return !is_text_array(array) && !writing_.placed.contains(&array);
+    return !are_texts(array.values) && !writing_.placed.contains(&array);
   }
 
   /// Returns whether arrays are steps 1, 2, … of one field.
@@ -272,13 +253,7 @@ class FieldWriter {
   }
 
   std::string unused_name(const DataArray& array, const std::string& wanted) {
-    const std::string clean = clean_name(wanted);
-    const auto numbered = [&](int k) {
-      const std::string number = fmt::format("_{}", k);
-      return std::string(utf8_prefix(clean, kLongestName - number.size())) + number;
-    };
-    std::string name = numbers_.free_name(
-        clean, numbered, [&](const std::string& free) { return names_.insert(free).second; });
+    std::string name = names_.take(clean_name(wanted));
     if (name != wanted) {
       writing_.notes.push_back(fmt::format("the array '{}' on {} is written as the field '{}'", array.name,
                                            to_string(array.association), name));
@@ -286,20 +261,20 @@ class FieldWriter {
     return name;
   }
 
-  static std::int64_t type_of(const DataArray& array) {
-    return std::visit(
-        [](const auto& values) {
-          using Value = typename std::decay_t<decltype(values)>::value_type;
-          if constexpr (std::is_integral_v<Value>) {
-            constexpr bool kFits =
-                std::numeric_limits<Value>::digits <= std::numeric_limits<std::int32_t>::digits;
-            const bool small = std::all_of(values.begin(), values.end(),
-                                           [](Value value) { return std::in_range<std::int64_t>(value); });
-            return kFits ? kIntegers : small ? kLongIntegers : kReals;
-          }
-          return kReals;
-        },
-        array.values);
+  /// Returns the type for the values of all steps, whose arrays have one number type.
+  ValueType type_of(const std::vector<Step>& steps) {
+    const DataArray& first = *steps.front().array;
+    if (!are_integers(first.values)) return kReals;
+    if (first.values.index() <= kIntegers.alternative) return kIntegers;
+    const bool fit = std::all_of(steps.begin(), steps.end(), [](const Step& step) {
+      return are_exact<std::int64_t>(step.array->values);
+    });
+    if (fit) return kLongIntegers;
+    writing_.notes.push_back(
+        fmt::format("the array '{}' loses digits: whole numbers above 9,223,372,036,854,775,807 are written "
+                    "as real ones",
+                    first.name));
+    return kReals;
   }
 
   std::string component_names(const DataArray& array) {
@@ -324,98 +299,61 @@ class FieldWriter {
     const DataArray& first = *steps.front().array;
     const std::string name = unused_name(first, wanted);
     const std::string path = "/CHA/" + name;
-    const auto components = static_cast<std::size_t>(first.components);
-    std::int64_t type = kIntegers;
-    for (const Step& step : steps) {
-      const std::int64_t of_step = type_of(*step.array);
-      if (of_step == kReals || type == kIntegers) type = of_step;
-    }
-    const bool whole = std::visit(
-        [](const auto& values) {
-          return std::is_integral_v<typename std::decay_t<decltype(values)>::value_type>;
-        },
-        first.values);
-    if (whole && type == kReals) {
-      writing_.notes.push_back(
-          fmt::format("the array '{}' loses digits: whole numbers above 9,223,372,036,854,775,807 are "
-                      "written as real ones",
-                      first.name));
-    }
+    const ValueType type = type_of(steps);
     hdf5::File& file = writing_.file;
     file.make_group(path);
     file.set_attribute(path, "MAI", writing_.layout.mesh);
-    file.set_attribute(path, "NCO", static_cast<std::int64_t>(components));
+    file.set_attribute(path, "NCO", std::int64_t{first.components});
     file.set_attribute(path, "NOM", component_names(first));
-    file.set_attribute(path, "UNI", std::string(kShortName * components, ' '));
+    file.set_attribute(path, "UNI",
+                       std::string(kShortName * static_cast<std::size_t>(first.components), ' '));
     file.set_attribute(path, "UNT", std::string());
-    file.set_attribute(path, "TYP", type);
+    file.set_attribute(path, "TYP", type.number);
     for (const Step& step : steps) write_step(name, path, step, type);
   }
 
-  void write_step(const std::string& name, const std::string& path, const Step& step, std::int64_t type) {
+  void write_step(const std::string& name, const std::string& path, const Step& step, const ValueType& type) {
     hdf5::File& file = writing_.file;
     const int number = step.number == 0 ? -1 : step.number;
     const std::string group = fmt::format("{}/{:020d}{:020d}", path, number, -1);
-    const std::string mesh_step = writing_.layout.mesh_path() + "/" + writing_.layout.step;
+    const std::string mesh_step = writing_.layout.step_path();
     file.make_group(group);
-    file.set_attribute(group, "NDT", std::int64_t{number});
-    file.set_attribute(group, "NOR", std::int64_t{-1});
+    set_attributes(file, group, {{"NDT", number}, {"NOR", -1}});
     file.set_attribute(group, "PDT", static_cast<double>(step.number));
-    file.set_attribute(group, "RDT", file.integer_attribute(mesh_step, "NDT").value_or(-1));
-    file.set_attribute(group, "ROR", file.integer_attribute(mesh_step, "NOR").value_or(-1));
-    const DataArray& array = *step.array;
-    if (array.association == Association::vertices) {
-      return write_support(name, group + "/NOE", array, nullptr, type);
-    }
-    for (const GeometryType& geometry : geometry_types()) {
-      if (writing_.cells.contains(&geometry))
-        write_support(name, fmt::format("{}/MAI.{}", group, geometry.name), array, &geometry, type);
+    set_attributes(file, group,
+                   {{"RDT", file.integer_attribute(mesh_step, "NDT").value_or(-1)},
+                    {"ROR", file.integer_attribute(mesh_step, "NOR").value_or(-1)}});
+    const bool on_vertices = step.array->association == Association::vertices;
+    for (const auto& [geometry, range] : writing_.ranges) {
+      if (on_vertices != (geometry == nullptr)) continue;
+      const std::string support = on_vertices ? "NOE" : fmt::format("MAI.{}", geometry->name);
+      write_support({.field = name,
+                     .support = group + "/" + support,
+                     .type = geometry,
+                     .components = static_cast<std::size_t>(step.array->components)},
+                    *step.array, type);
     }
   }
 
-  void write_support(const std::string& field, const std::string& support, const DataArray& array,
-                     const GeometryType* geometry, std::int64_t type) {
-    const Rows rows = rows_of(array, geometry);
+  /// Writes the values of a new field for vertices or for the cells of a type.
+  void write_support(const Piece& piece, const DataArray& array, const ValueType& type) {
+    const Rows rows = rows_of(array, piece.type);
     if (rows.rows.empty()) return;
     hdf5::File& file = writing_.file;
-    std::string profile(kNoProfile);
-    if (rows.rows.size() < items_of(geometry))
-      profile = profiles_.name_for(profile_name(field, geometry), rows.places);
-    const Piece piece{.field = field,
-                      .support = support,
-                      .profile = profile,
-                      .array = array.name,
-                      .type = geometry,
-                      .components = static_cast<std::size_t>(array.components)};
-    const std::string group = support + "/" + profile;
+    const std::string profile = profile_for(std::string(kNoProfile), rows, piece);
+    const std::string group = piece.support + "/" + profile;
     file.make_group(group);
-    file.set_attribute(support, "GAU", std::string());
-    file.set_attribute(support, "PFL", profile);
-    file.set_attribute(group, "NBR", static_cast<std::int64_t>(items_of(geometry)));
-    file.set_attribute(group, "NGA", std::int64_t{1});
+    file.set_attribute(piece.support, "GAU", std::string());
+    file.set_attribute(piece.support, "PFL", profile);
+    set_attributes(file, group, {{"NBR", static_cast<std::int64_t>(items_of(piece.type))}, {"NGA", 1}});
     file.set_attribute(group, "GAU", std::string());
-    Values values;
-    if (type == kReals) {
-      values = values_of<double>(array, rows, piece);
-    } else if (type == kLongIntegers) {
-      values = values_of<std::int64_t>(array, rows, piece);
-    } else {
-      values = values_of<std::int32_t>(array, rows, piece);
-    }
-    const std::size_t size = rows.rows.size() * piece.components;
-    file.write(group + "/CO", values, {size});
-  }
-
-  /// Returns the name of a new profile for a field.
-  static std::string profile_name(const std::string& field, const GeometryType* type) {
-    const std::string suffix = fmt::format("_{}", type == nullptr ? "NOE" : type->name);
-    return std::string(utf8_prefix(field, kLongestName - suffix.size())) + suffix;
+    const Values values = values_of(array, rows, piece, type.alternative);
+    file.write(group + "/CO", values, {size_of(values)});
   }
 
   Writing& writing_;
   Profiles profiles_;
-  std::set<std::string> names_;  // names of fields
-  NameNumbers numbers_;
+  DistinctNames names_{kLongestName};  // of fields
   const DataArray* last_array_ = nullptr;
   std::vector<Index> table_;  // rows of `last_array_` by item
 };

@@ -19,6 +19,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <set>
@@ -86,24 +87,31 @@ struct Equivalence {
   std::vector<Index> members = {};     ///< vertices or cells of the mesh, two for each pair
 };
 
-/// Contents of a file for vertices or for the cells of a type, besides coordinates and nodes.
+/// Whether the file has numbers and families for vertices or for the cells of a type.
 struct Items {
   bool has_numbers = false;
-  bool has_names = false;
-  bool has_global_numbers = false;
   bool has_families = false;
 };
 
+/// Consecutive vertices, or consecutive cells of one type.
+struct Range {
+  Index first = 0;
+  Index count = 0;
+};
+/// The vertices (type null) and the cells of each type of a mesh.
+using Ranges = std::map<const GeometryType*, Range>;
+/// Returns the range of a type, an empty one if there is none.
+Range range_in(const Ranges& ranges, const GeometryType* type);
+
 /// Data of a file beyond the mesh.
 struct MedLayout final : FormatMetadata {
-  std::shared_ptr<const std::string> file;  ///< bytes, without the values that depend on the mesh
-  std::string mesh;                         ///< name
-  std::string step;                         ///< name of the group of the mesh's only step
-  bool is_made = false;                     ///< made by `new_layout`
-  bool in_mesh_order = false;               ///< nodes of cells are in the order of a Mesh
-  int axes = 3;                             ///< coordinates of a point
-  Items vertices;
-  std::map<std::string, Items> cells;                ///< by type
+  std::shared_ptr<const std::string> file;           ///< bytes, without the values that depend on the mesh
+  std::string mesh;                                  ///< name
+  std::string step;                                  ///< name of the group of the mesh's only step
+  bool is_made = false;                              ///< made by `new_layout`
+  bool in_mesh_order = false;                        ///< nodes of cells are in the order of a Mesh
+  int axes = 3;                                      ///< coordinates of a point
+  std::map<const GeometryType*, Items> items;        ///< by type; null: vertices
   std::string families_array = std::string(kLabel);  ///< array of the mesh with the numbers of families
   std::array<std::vector<Family>, 2> families;       ///< by association
   std::vector<Piece> pieces;
@@ -111,9 +119,14 @@ struct MedLayout final : FormatMetadata {
   std::vector<std::string> words;  ///< see `contents`
 
   [[nodiscard]] std::string mesh_path() const { return "/ENS_MAA/" + mesh; }
-  [[nodiscard]] std::string nodes_path() const { return mesh_path() + "/" + step + "/NOE"; }
-  [[nodiscard]] std::string cells_path() const { return mesh_path() + "/" + step + "/MAI"; }
+  [[nodiscard]] std::string step_path() const { return mesh_path() + "/" + step; }
+  [[nodiscard]] std::string cells_path() const { return step_path() + "/MAI"; }
+  /// Returns the path of the group of the vertices (null) or of the cells of a type.
+  [[nodiscard]] std::string path_of(const GeometryType* type) const;
   [[nodiscard]] std::string families_path(Association association) const;
+  /// Returns, for each point of a cell in the file, its place in the rows of an array; empty if the orders
+  /// are equal.
+  [[nodiscard]] std::span<const int> order_of_points(const Piece& piece) const;
 
   [[nodiscard]] std::vector<std::string> contents() const override { return words; }
   [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> new_vertices,
@@ -139,19 +152,18 @@ struct Reading {
   Reading(const FilePath& path, Notes& warnings);
 
   /// Throws InputError for a fault at a group or a dataset.
-  [[noreturn]] void fail(const std::string& path, const std::string& what, const std::string& remedy) const;
-  /// Adds an array under a name that no other array has; returns that name.
+  [[noreturn]] void fail(const std::string& path, const std::string& what,
+                         const std::string& remedy = "the file may be damaged") const;
+  /// Adds an array under a name that no other array has, its rows in the order of their vertices or cells.
+  /// Returns that name.
   std::string add_array(DataArray array);
-  /// Returns the first cell of a type and the number of these cells; 0 and the number of vertices if `type`
-  /// is null.
-  [[nodiscard]] std::pair<Index, Index> range(const GeometryType* type) const;
   /// Marks a dataset that the writer writes.
   void take(const std::string& path) { taken.insert(hdf5::normal_path(path)); }
 
   hdf5::File file;
   std::shared_ptr<MedLayout> layout = std::make_shared<MedLayout>();
   Mesh mesh;
-  std::map<const GeometryType*, std::pair<Index, Index>> ranges;  ///< first cell and number of each type
+  Ranges ranges;
   std::set<std::string> taken;
   Notes& notes;
 
@@ -170,17 +182,19 @@ struct Writing {
   const MedLayout& layout;
   hdf5::File& file;
   Notes& notes;
-  std::map<const GeometryType*, std::vector<Index>> cells;  ///< of each type that the mesh has
-  std::set<const DataArray*> placed;                        ///< arrays written already, which need no field
+  Ranges ranges;
+  std::set<const DataArray*> placed;  ///< arrays written already, which need no field
 
-  /// Returns the array of that name and marks it as written; null if there is none or it was marked before.
-  const DataArray* take(std::string_view name, Association association);
   /// Writes numbers of `rows` items to a dataset and sets its attributes.
-  void put(const std::string& path, const Values& values, std::size_t rows);
+  void put(const std::string& path, const Values& values, Index rows);
   /// Writes whole numbers with 32 bits, or with 64 if the dataset already has wider numbers or 32 are too
   /// few.
-  void put_integers(const std::string& path, const std::vector<std::int64_t>& values, std::size_t rows);
+  void put_integers(const std::string& path, std::vector<std::int64_t> values);
 };
+
+/// Attributes that are whole numbers.
+using Numbers = std::initializer_list<std::pair<const char*, std::int64_t>>;
+void set_attributes(hdf5::File& file, const std::string& path, Numbers numbers);
 
 /// Writes the families and returns their numbers for each vertex or cell; empty if all are 0.
 std::vector<std::int64_t> write_families(Writing& writing, Association association);

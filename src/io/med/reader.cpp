@@ -27,12 +27,16 @@ void Reading::fail(const std::string& path, const std::string& what, const std::
   throw InputError(file.name(), fmt::format("'{}' {}", path, what), remedy);
 }
 
-std::string Reading::add_array(DataArray array) { return add_named(mesh, std::move(array), arrays_); }
-
-std::pair<Index, Index> Reading::range(const GeometryType* type) const {
-  if (type == nullptr) return {0, mesh.vertex_count()};
-  const auto found = ranges.find(type);
-  return found == ranges.end() ? std::pair<Index, Index>{0, 0} : found->second;
+std::string Reading::add_array(DataArray array) {
+  std::vector<Index>& items = array.indices;
+  if (!std::is_sorted(items.begin(), items.end())) {
+    std::vector<Index> rows = index_range(0, index_size(items));
+    std::sort(rows.begin(), rows.end(), [&](Index a, Index b) { return items[a] < items[b]; });
+    array.values = rows_of_values(array.values, array.components, rows);
+    std::sort(items.begin(), items.end());
+  }
+  make_dense(array, item_count(mesh, array.association));
+  return add_named(mesh, std::move(array), arrays_);
 }
 
 std::string utf8(std::string text) {
@@ -99,7 +103,7 @@ void find_mesh(Reading& reading) {
   for (const std::string& name : file.names(mesh)) {
     if (has_mesh(file, fmt::format("{}/{}", mesh, name))) steps.push_back(name);
   }
-  if (steps.empty()) reading.fail(mesh, "has no nodes", "the file may be damaged");
+  if (steps.empty()) reading.fail(mesh, "has no nodes");
   if (steps.size() > 1) {
     reading.fail(mesh, fmt::format("changes over {} steps", steps.size()),
                  "save one of its steps in a separate file");
@@ -110,7 +114,7 @@ void find_mesh(Reading& reading) {
 /// Refuses meshes described by faces or edges, and pieces of a larger mesh.
 void refuse_unknown_kinds(const Reading& reading) {
   const MedLayout& layout = *reading.layout;
-  const std::string step = layout.mesh_path() + "/" + layout.step;
+  const std::string step = layout.step_path();
   for (const auto& [group, words] : {std::pair{"FAC", "faces"}, std::pair{"ARE", "edges"}}) {
     if (reading.file.names(step + "/" + group).empty()) continue;
     reading.fail(step + "/" + group, fmt::format("describes its cells by {}", words),
@@ -127,8 +131,7 @@ void refuse_unknown_kinds(const Reading& reading) {
 Index row_count_of(const Reading& reading, const std::string& path, std::size_t width) {
   const std::uint64_t size = reading.file.info(path).size();
   if (size % width != 0) {
-    reading.fail(path, fmt::format("has {} values, which do not make rows of {}", size, width),
-                 "the file may be damaged");
+    reading.fail(path, fmt::format("has {} values, which do not make rows of {}", size, width));
   }
   if (size / width > static_cast<std::uint64_t>(kMaxIndex)) {
     reading.fail(path, fmt::format("has {} rows", size / width), "2,147,483,647 is the most");
@@ -146,12 +149,13 @@ void read_points(Reading& reading) {
   }
   layout.axes = static_cast<int>(axes);
   mesh.dimension = axes == 3 ? 3 : 2;
-  const std::string path = layout.nodes_path() + "/COO";
+  const std::string path = layout.path_of(nullptr) + "/COO";
   const auto width = static_cast<std::size_t>(axes);
   const Index count = row_count_of(reading, path, width);
   reading.take(path);
   const Values values = reading.file.read(path);
   resize_large(mesh.points, static_cast<std::size_t>(count));
+  reading.ranges[nullptr] = {0, count};
   with_numbers(values, [&](const auto& numbers) {
     for (std::size_t k = 0; k < width; ++k) {
       const auto* const axis = numbers.data() + k * mesh.points.size();
@@ -173,7 +177,7 @@ void read_points(Reading& reading) {
 
 /// Reads the nodes of the cells of a type, in the order of the file.
 void read_cells(Reading& reading, const GeometryType& type) {
-  const std::string group = fmt::format("{}/{}", reading.layout->cells_path(), type.name);
+  const std::string group = reading.layout->path_of(&type);
   const std::string path = group + "/NOD";
   if (!reading.file.has(path) && reading.file.has(group + "/DES")) {
     reading.fail(group, "describes its cells by faces and edges", "write the cells by their nodes");
@@ -231,10 +235,10 @@ void turn(std::span<Index> cell, std::span<const int> order) {
 void turn_cells(Reading& reading) {
   Mesh& mesh = reading.mesh;
   WedgeVote vote(mesh.points);
-  for (const auto& [type, range] : reading.ranges) {
-    const auto known = static_cast<std::size_t>(corners(type->shape, type->nodes));
-    for (Index c = range.first; c < range.first + range.second; ++c)
-      vote.add(type->shape, std::as_const(mesh.cells)[c].first(known));
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const std::span<const Index> cell = std::as_const(mesh.cells)[c];
+    const Shape shape = mesh.cells.shapes[c];
+    vote.add(shape, cell.first(static_cast<std::size_t>(corners(shape, static_cast<int>(cell.size())))));
   }
   reading.layout->in_mesh_order = vote.sign_of_volumes() > 0;
   if (reading.layout->in_mesh_order) {
@@ -243,9 +247,8 @@ void turn_cells(Reading& reading) {
     return;
   }
   for (const auto& [type, range] : reading.ranges) {
-    const std::span<const int> order = mesh_order(*type);
-    if (order.empty()) continue;
-    for (Index c = range.first; c < range.first + range.second; ++c) turn(mesh.cells[c], order);
+    if (type == nullptr || mesh_order(*type).empty()) continue;
+    for (Index c = range.first; c < range.first + range.count; ++c) turn(mesh.cells[c], mesh_order(*type));
   }
 }
 
@@ -255,7 +258,7 @@ void read_all_cells(Reading& reading) {
     if (geometry_type(name) == nullptr) fail_at_type(reading, fmt::format("{}/{}", path, name), name);
   }
   for (const GeometryType& type : geometry_types()) {
-    if (reading.file.has(fmt::format("{}/{}", path, type.name))) read_cells(reading, type);
+    if (reading.file.has(reading.layout->path_of(&type))) read_cells(reading, type);
   }
   turn_cells(reading);
 }
@@ -267,8 +270,7 @@ std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& path
   std::vector<std::int64_t> result;
   with_integers(values, [&](const auto& numbers) { result.assign(numbers.begin(), numbers.end()); });
   if (index_size(result) != rows) {
-    reading.fail(path, fmt::format("has {} whole numbers, not {}", result.size(), rows),
-                 "the file may be damaged");
+    reading.fail(path, fmt::format("has {} whole numbers, not {}", result.size(), rows));
   }
   return result;
 }
@@ -281,22 +283,18 @@ bool are_unique(std::vector<std::int64_t> numbers) {
   return std::adjacent_find(numbers.begin(), numbers.end()) == numbers.end();
 }
 
-/// Values that only some types of cells have, collected into one array.
-template <class Value>
-struct Collected {
-  std::vector<Value> values;
-  std::vector<Index> indices;
-
-  void add(std::vector<Value> more, Index first) {
-    indices.reserve(indices.size() + more.size());
-    for (std::size_t i = 0; i < more.size(); ++i) indices.push_back(first + static_cast<Index>(i));
-    if (values.empty()) {
-      values = std::move(more);
-      return;
-    }
-    values.insert(values.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+/// Appends the values of consecutive vertices or cells to an array.
+void append(DataArray& array, Values values, Index first) {
+  std::vector<Index>& items = array.indices;
+  const std::size_t before = items.size();
+  items.resize(before + size_of(values));
+  std::iota(items.begin() + static_cast<std::ptrdiff_t>(before), items.end(), first);
+  if (before == 0) {
+    array.values = std::move(values);
+  } else {
+    append_values(array.values, std::move(values));
   }
-};
+}
 
 /// Reads the data of vertices, or of cells of each type, besides coordinates and nodes.
 class ItemReader {
@@ -304,97 +302,83 @@ class ItemReader {
   ItemReader(Reading& reading, Association association) : reading_(reading), association_(association) {}
 
   void read(const GeometryType* type) {
-    const MedLayout& layout = *reading_.layout;
-    const bool on_vertices = type == nullptr;
-    const std::string group =
-        on_vertices ? layout.nodes_path() : fmt::format("{}/{}", layout.cells_path(), type->name);
-    const auto [first, count] = reading_.range(type);
+    const std::string group = reading_.layout->path_of(type);
+    const auto [first, count] = range_in(reading_.ranges, type);
     if (count == 0) return;
-    Items& items = on_vertices ? reading_.layout->vertices : reading_.layout->cells[std::string(type->name)];
+    Items& items = reading_.layout->items[type];
     const hdf5::File& file = reading_.file;
-    if ((items.has_numbers = file.has(group + "/NUM"))) {
+    if (file.has(group + "/NUM")) {
       std::vector<std::int64_t> numbers = read_numbers(reading_, group + "/NUM", count);
-      if (are_unique(numbers)) {
-        numbers_.add(std::move(numbers), first);
+      items.has_numbers = are_unique(numbers);
+      if (items.has_numbers) {
+        append(numbers_, std::move(numbers), first);
       } else {
         reading_.notes.push_back(fmt::format("'{}/NUM' gives a number twice and is left out", group));
-        items.has_numbers = false;
       }
     }
-    if ((items.has_global_numbers = file.has(group + "/GLB"))) {
-      global_numbers_.add(read_numbers(reading_, group + "/GLB", count), first);
+    if (file.has(group + "/GLB")) {
+      append(global_numbers_, read_numbers(reading_, group + "/GLB", count), first);
     }
     if ((items.has_families = file.has(group + "/FAM"))) {
-      families_.add(read_numbers(reading_, group + "/FAM", count), first);
+      append(families_, read_numbers(reading_, group + "/FAM", count), first);
     }
-    if ((items.has_names = file.has(group + "/NOM"))) {
+    if (file.has(group + "/NOM")) {
       reading_.take(group + "/NOM");
       std::vector<std::string> names = file.read_texts(group + "/NOM");
       for (std::string& name : names) name = utf8(std::move(name));
       if (index_size(names) != count) {
-        reading_.fail(group + "/NOM", fmt::format("has {} names, not {}", names.size(), count),
-                      "the file may be damaged");
+        reading_.fail(group + "/NOM", fmt::format("has {} names, not {}", names.size(), count));
       }
-      names_.add(std::move(names), first);
+      append(names_, std::move(names), first);
     }
   }
 
   void finish() {
-    finish_numbers();
+    if (!numbers_.indices.empty()) make_ids();
     add_array(std::string(kNames), std::move(names_));
-    if (!global_numbers_.values.empty()) {
-      Values values = label_values(std::move(global_numbers_.values));
-      add_array(std::string(kGlobalNumbers), std::move(values), std::move(global_numbers_.indices));
-    }
-    if (std::any_of(families_.values.begin(), families_.values.end(),
-                    [](std::int64_t f) { return f != 0; })) {
-      Values values = label_values(std::move(families_.values));
-      add_array(reading_.layout->families_array, std::move(values), std::move(families_.indices));
-    }
+    add_array(std::string(kGlobalNumbers), std::move(global_numbers_));
+    const bool any = with_integers(families_.values, [](const auto& families) {
+      return std::any_of(families.begin(), families.end(), [](auto family) { return family != 0; });
+    });
+    if (any) add_array(reading_.layout->families_array, std::move(families_));
   }
 
  private:
-  [[nodiscard]] Index count() const {
-    return association_ == Association::vertices ? reading_.mesh.vertex_count() : reading_.mesh.cell_count();
-  }
-
   /// Makes the ids from the numbers of the file. Cells of types without numbers get 1, 2, … for each type.
-  void finish_numbers() {
-    if (numbers_.values.empty()) return;
+  void make_ids() {
     Mesh& mesh = reading_.mesh;
+    const auto& numbers = std::get<std::vector<std::int64_t>>(numbers_.values);
     if (association_ == Association::vertices) {
       IdMap ids;
-      for (const std::int64_t number : numbers_.values) ids.add(number);
+      for (const std::int64_t number : numbers) ids.add(number);
       mesh.vertex_ids = ids.ids_unless_from(1);
       return;
     }
     mesh.cell_ids.resize(mesh.cells.shapes.size());
     for (const auto& [type, range] : reading_.ranges) {
-      std::iota(mesh.cell_ids.begin() + range.first, mesh.cell_ids.begin() + range.first + range.second,
-                std::int64_t{1});
+      if (type == nullptr) continue;
+      const auto begin = mesh.cell_ids.begin() + range.first;
+      std::iota(begin, begin + range.count, std::int64_t{1});
     }
-    for (std::size_t i = 0; i < numbers_.values.size(); ++i)
-      mesh.cell_ids[static_cast<std::size_t>(numbers_.indices[i])] = numbers_.values[i];
+    for (std::size_t i = 0; i < numbers.size(); ++i) mesh.cell_ids[numbers_.indices[i]] = numbers[i];
   }
 
-  void add_array(std::string name, Collected<std::string> names) {
-    if (!names.values.empty()) add_array(std::move(name), std::move(names.values), std::move(names.indices));
-  }
-
-  void add_array(std::string name, Values values, std::vector<Index> indices) {
-    if (index_size(indices) == count()) indices.clear();
-    reading_.add_array({.name = std::move(name),
-                        .association = association_,
-                        .values = std::move(values),
-                        .indices = std::move(indices)});
+  void add_array(std::string name, DataArray array) {
+    if (array.indices.empty()) return;
+    array.name = std::move(name);
+    array.association = association_;
+    if (auto* const numbers = std::get_if<std::vector<std::int64_t>>(&array.values)) {
+      array.values = label_values(std::move(*numbers));
+    }
+    reading_.add_array(std::move(array));
   }
 
   Reading& reading_;
   Association association_;
-  Collected<std::int64_t> numbers_;
-  Collected<std::int64_t> global_numbers_;
-  Collected<std::int64_t> families_;
-  Collected<std::string> names_;
+  DataArray numbers_;
+  DataArray global_numbers_;
+  DataArray families_;
+  DataArray names_;
 };
 
 void read_items(Reading& reading) {
@@ -403,9 +387,7 @@ void read_items(Reading& reading) {
   vertices.finish();
   ItemReader cells(reading, Association::cells);
   // in the order of the cells
-  for (const GeometryType& type : geometry_types()) {
-    if (reading.ranges.contains(&type)) cells.read(&type);
-  }
+  for (const GeometryType& type : geometry_types()) cells.read(&type);
   cells.finish();
 }
 
@@ -418,7 +400,7 @@ void read_equivalence(Reading& reading, const std::string& group) {
   Equivalence equivalence{group + "/COR", type};
   const Index pairs = row_count_of(reading, equivalence.dataset, 2);
   reading.take(equivalence.dataset);
-  const auto [first, count] = reading.range(type);
+  const auto [first, count] = range_in(reading.ranges, type);
   equivalence.members = reading.file.read_indices(equivalence.dataset);
   for (Index& member : equivalence.members) {
     if (member < 1 || member > count) {
@@ -447,7 +429,7 @@ void read_equivalences(Reading& reading) {
 
 /// Notes the datasets of the mesh that are not understood and stay as they are.
 void note_others(Reading& reading) {
-  const std::string step = reading.layout->mesh_path() + "/" + reading.layout->step + "/";
+  const std::string step = reading.layout->step_path() + "/";
   for (const auto& [path, rows] : reading.file.datasets()) {
     if (!path.starts_with(step) || reading.taken.contains(path)) continue;
     // numbers that are not unique were left out

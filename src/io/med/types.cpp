@@ -1,9 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/med/med.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
-// Types of cells and the order of their nodes.
+// Types of cells, the order of their nodes, and their places in a file.
 
 namespace meshorder::med {
 namespace {
@@ -59,6 +61,20 @@ std::span<const int> mesh_order(const GeometryType& type) {
     default:
       return {};
   }
+}
+
+Range range_in(const Ranges& ranges, const GeometryType* type) {
+  const auto found = ranges.find(type);
+  return found == ranges.end() ? Range{} : found->second;
+}
+
+std::string MedLayout::path_of(const GeometryType* type) const {
+  return type == nullptr ? step_path() + "/NOE" : fmt::format("{}/{}", cells_path(), type->name);
+}
+
+std::span<const int> MedLayout::order_of_points(const Piece& piece) const {
+  const bool by_node = piece.at_nodes && !in_mesh_order && std::cmp_equal(piece.points, piece.type->nodes);
+  return by_node ? mesh_order(*piece.type) : std::span<const int>();
 }
 
 }  // namespace meshorder::med
