@@ -5,10 +5,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 #include <set>
-#include <type_traits>
 #include <utility>
 
 // Makes arrays from the values of nodes. Values with the same name that belong to different vertices or cells
@@ -20,19 +18,6 @@ namespace {
 /// Pieces that become one array.
 using Group = std::vector<Piece*>;
 
-/// Returns whether the pieces have values of one type, and no vertex or cell has two values.
-bool fit_together(const Group& group, std::size_t total) {
-  std::vector<bool> taken(total);
-  for (const Piece* const piece : group) {
-    if (piece->values.index() != group.front()->values.index()) return false;
-    for (const Index row : *piece->rows) {
-      if (taken[row]) return false;
-      taken[row] = true;
-    }
-  }
-  return true;
-}
-
 class ArrayMaker {
  public:
   explicit ArrayMaker(Reading& reading) : reading_(reading) {
@@ -43,7 +28,8 @@ class ArrayMaker {
     std::map<std::pair<Association, std::string>, std::size_t> places;
     std::vector<Group> groups;
     for (Piece& piece : reading_.pieces) {
-      const auto [place, is_new] = places.emplace(std::pair{piece.association, piece.name}, groups.size());
+      const auto [place, is_new] =
+          places.emplace(std::pair{field_of(piece).association, piece.name}, groups.size());
       if (is_new) groups.emplace_back();
       groups[place->second].push_back(&piece);
     }
@@ -51,19 +37,31 @@ class ArrayMaker {
   }
 
  private:
-  [[nodiscard]] std::size_t total(Association association) const {
-    return association == Association::vertices ? reading_.mesh.points.size()
-                                                : reading_.mesh.cells.shapes.size();
+  [[nodiscard]] const Field& field_of(const Piece& piece) const {
+    return reading_.metadata->fields[piece.field];
+  }
+
+  /// Returns whether the pieces have values of one type, and no vertex or cell has two values.
+  [[nodiscard]] bool fit_together(const Group& group) const {
+    std::vector<bool> taken(item_count(reading_.mesh, field_of(*group.front()).association));
+    for (const Piece* const piece : group) {
+      if (piece->values.index() != group.front()->values.index()) return false;
+      for (const Index row : reading_.rows_of(field_of(*piece))) {
+        if (taken[row]) return false;
+        taken[row] = true;
+      }
+    }
+    return true;
   }
 
   /// Makes one array of a group. If pieces overlap, splits it by solution (level 0), then by node (level 1).
   void make_of(const Group& group, int level) {
     const Piece& first = *group.front();
-    if (group.size() == 1 || fit_together(group, total(first.association))) {
-      const std::string before = level == 0 ? ""
-                                 : level == 1
-                                     ? first.solution + "."
-                                     : reading_.metadata->zones[first.zone].name + "." + first.solution + ".";
+    if (group.size() == 1 || fit_together(group)) {
+      const std::string zone = reading_.metadata->zones[field_of(first).place].name;
+      const std::string before = level == 0   ? ""
+                                 : level == 1 ? first.solution + "."
+                                              : zone + "." + first.solution + ".";
       return add(group, before + first.name);
     }
     std::map<std::string, Group> parts;
@@ -77,26 +75,26 @@ class ArrayMaker {
   }
 
   void add(const Group& group, const std::string& wanted) {
-    const Association association = group.front()->association;
+    const Association association = field_of(*group.front()).association;
     const std::string name = numbers_[association].free_name(
         wanted, [&](int k) { return fmt::format("{} {}", wanted, k); },
         [&](const std::string& free) {
           return names_.insert({association, free}).second;
         });
-    for (const Piece* const piece : group) reading_.metadata->fields[piece->field].array = name;
     DataArray array{.name = name, .association = association};
     for (const Piece* const piece : group) {
-      array.indices.insert(array.indices.end(), piece->rows->begin(), piece->rows->end());
+      reading_.metadata->fields[piece->field].array = name;
+      const std::vector<Index> rows = reading_.rows_of(field_of(*piece));
+      array.indices.insert(array.indices.end(), rows.begin(), rows.end());
     }
-    const bool has_duplicates = group.size() == 1 && !fit_together(group, total(association));
-    if (has_duplicates) {
+    if (group.size() == 1 && !fit_together(group)) {
       reading_.fail("", "the solution '" + group.front()->solution + "' lists a vertex or cell twice",
                     "each may have one value");
     }
     array.values = std::move(group.front()->values);
     for (std::size_t p = 1; p < group.size(); ++p)
       append_values(array.values, std::exchange(group[p]->values, {}));
-    make_dense(array, static_cast<Index>(total(association)));
+    make_dense(array, item_count(reading_.mesh, association));
     reading_.mesh.data.push_back(std::move(array));
   }
 

@@ -63,12 +63,6 @@ class AttachmentReader {
   }
 
  private:
-  /// A list that becomes a set; other sets may have the same name in the file.
-  struct FoundSet {
-    int list;
-    std::string name;
-  };
-
   ZonePlaces& zone() { return reading_.zones[zone_]; }
 
   // ---- positions of numbers
@@ -202,19 +196,6 @@ class AttachmentReader {
     }
   }
 
-  /// Returns the rows of values without a list: all vertices of the zone, or cells of the base's dimension.
-  std::shared_ptr<const std::vector<Index>> all_rows(Association association) {
-    auto& known = rows_[{zone_, association}];
-    if (known == nullptr) {
-      if (association == Association::cells) {
-        known = std::make_shared<std::vector<Index>>(zone().centred_cells);
-      } else {
-        known = std::make_shared<std::vector<Index>>(index_range(zone().first_vertex, zone().vertices));
-      }
-    }
-    return known;
-  }
-
   void read_container(Node& node, const std::string& path) {
     refuse_ghosts(node, path);
     const Association association = location_of(node, Association::vertices);
@@ -224,46 +205,46 @@ class AttachmentReader {
         has_named_part_ = has_named_part_ || has_data_of_list(node);
         return;
       }
-      sets_.push_back({list, node.name});
+      sets_.emplace_back(list, node.name);
     }
-    std::shared_ptr<const std::vector<Index>> rows;
+    Field rows{.association = association, .list = list};
+    std::size_t count = association == Association::cells ? zone().centred_cells.size()
+                                                          : static_cast<std::size_t>(zone().vertices);
     if (list >= 0) {
-      rows = std::make_shared<std::vector<Index>>(metadata_.lists[list].members);
-    } else {
-      rows = all_rows(association);
+      rows.association = metadata_.lists[list].association;
+      count = metadata_.lists[list].members.size();
     }
-    const Association of_rows = list >= 0 ? metadata_.lists[list].association : association;
     for (Node& child : node.children) {
       if (child.label == "DataArray_t" && child.field < 0) {
-        read_values(child, node.name, of_rows, rows, list, path + "/" + child.name);
+        read_values(child, node.name, rows, count, path + "/" + child.name);
       }
     }
   }
 
-  void read_values(Node& node, const std::string& solution, Association association,
-                   const std::shared_ptr<const std::vector<Index>>& rows, int list, const std::string& path) {
+  /// Reads values for the `count` vertices or cells that the association, the section and the list of `rows`
+  /// give.
+  void read_values(Node& node, const std::string& solution, const Field& rows, std::size_t count,
+                   const std::string& path) {
     Values values = numbers_of(node);
-    if (std::holds_alternative<std::vector<std::string>>(values)) {
-      if (rows->size() > 1 && node.size() == rows->size()) {
+    if (are_texts(values)) {
+      if (count > 1 && node.size() == count) {
         reading_.notes.push_back(
             fmt::format("'{}' is kept as it is, though it has as many characters as there are {}", path,
-                        to_string(association)));
+                        to_string(rows.association)));
       }
       return;
     }
-    if (node.size() != rows->size()) {
-      reading_.fail(
-          path, fmt::format("has {} values for {} {}", node.size(), rows->size(), to_string(association)));
+    if (node.size() != count) {
+      reading_.fail(path,
+                    fmt::format("has {} values for {} {}", node.size(), count, to_string(rows.association)));
     }
-    const int field = reading_.bind(node, {.role = Field::Role::values,
-                                           .place = zone_,
-                                           .type = node.type,
-                                           .association = association,
-                                           .list = list});
+    Field field = rows;
+    field.place = zone_;
+    field.type = node.type;
     const auto step = zone().steps.find(solution);
     const std::string name =
         step == zone().steps.end() ? node.name : fmt::format("{} step {}", node.name, step->second);
-    reading_.pieces.push_back({solution, name, zone_, association, rows, std::move(values), field});
+    reading_.pieces.push_back({solution, name, std::move(values), reading_.bind(node, std::move(field))});
   }
 
   /// Reads user data, whose meaning is not known. They are reordered only if they give a GridLocation_t.
@@ -286,7 +267,7 @@ class AttachmentReader {
     const Association association = location_of(node, Association::vertices);
     const int list = read_own_list(node, association, path);
     if (list < 0) reading_.fail(path, "does not say where it applies", "PointList or PointRange is expected");
-    sets_.push_back({list, node.name});
+    sets_.emplace_back(list, node.name);
     for (Node& child : node.children) {
       if (child.label == "BCDataSet_t") {
         (void)read_own_list(child, location_of(child, metadata_.lists[list].association),
@@ -323,13 +304,12 @@ class AttachmentReader {
     const auto first = std::find_if(node.children.begin(), node.children.end(), is_list);
     if (first == node.children.end()) return;
     PointList holes = list_in(*first, zone_, association, path + "/" + first->name);
-    bool is_only = true;
+    const bool is_only = std::none_of(first + 1, node.children.end(), is_list);
     for (auto child = first + 1; child != node.children.end(); ++child) {
       if (!is_list(*child)) continue;
       const PointList more = list_in(*child, zone_, association, path + "/" + child->name);
       holes.members.insert(holes.members.end(), more.members.begin(), more.members.end());
       holes.is_range = holes.is_range && more.is_range;
-      is_only = false;
     }
     if (!is_only) {
       std::sort(holes.members.begin(), holes.members.end());
@@ -366,19 +346,17 @@ class AttachmentReader {
   void read_section_values(int s, Node& values, const std::string& path) {
     if (values.label != "UserDefinedData_t") return;
     const Section& section = metadata_.sections[s];
-    const auto [first, count] = reading_.cells_of_section[s];
-    const auto rows = std::make_shared<const std::vector<Index>>(index_range(first, count));
+    const auto count = static_cast<std::size_t>(reading_.cells_of_section[s].count);
     for (Node& child : values.children) {
       if (child.label != "DataArray_t") continue;
-      if (section.type == kPolygons && child.size() != rows->size()) {
+      if (section.type == kPolygons && child.size() != count) {
         reading_.notes.push_back(
             fmt::format("'{}/{}/{}' is kept as it is: it has {} values for {} polygons of a boundary", path,
                         values.name, child.name, child.size(), count));
         continue;
       }
-      const std::size_t before = metadata_.fields.size();
-      read_values(child, section.name, Association::cells, rows, -1, path + "/" + child.name);
-      if (metadata_.fields.size() > before) metadata_.fields.back().section = s;
+      read_values(child, section.name, {.association = Association::cells, .section = s}, count,
+                  path + "/" + child.name);
     }
   }
 
@@ -470,20 +448,18 @@ class AttachmentReader {
 
   void name_sets() {
     std::map<std::string, int> uses;
-    for (const FoundSet& found : sets_) ++uses[found.name];
-    std::set<std::string> names;
-    for (const FoundSet& found : sets_) {
-      PointList& list = metadata_.lists[found.list];
-      const bool is_alone = uses[found.name] == 1;
-      add_set(list, is_alone ? found.name : fmt::format("{}.{}", metadata_.zones[list.zone].name, found.name),
-              names);
+    for (const auto& [list, name] : sets_) ++uses[name];
+    for (const auto& [place, name] : sets_) {
+      PointList& list = metadata_.lists[place];
+      const std::string& zone = metadata_.zones[list.zone].name;
+      add_set(list, uses[name] == 1 ? name : fmt::format("{}.{}", zone, name));
     }
   }
 
-  void add_set(PointList& list, const std::string& wanted, std::set<std::string>& names) {
+  void add_set(PointList& list, const std::string& wanted) {
     const std::string name = numbers_.free_name(
         wanted, [&](int k) { return fmt::format("{} {}", wanted, k); },
-        [&](const std::string& free) { return names.insert(free).second; });
+        [&](const std::string& free) { return set_names_.insert(free).second; });
     list.set = name;
     reading_.mesh.sets.push_back({name, list.association, unique_members(list.members)});
   }
@@ -492,9 +468,7 @@ class AttachmentReader {
   /// sections.
   void add_section_sets() {
     std::vector<bool> is_named(reading_.mesh.cells.shapes.size());
-    std::set<std::string> names;
     for (const EntitySet& set : reading_.mesh.sets) {
-      names.insert(set.name);
       if (set.association == Association::vertices) continue;
       for (const Index member : set.members) is_named[member] = true;
     }
@@ -510,7 +484,7 @@ class AttachmentReader {
       if (std::find(begin, begin + count, false) == begin + count) continue;
       PointList list{.zone = section.zone, .association = Association::cells};
       list.members = index_range(first, count);
-      add_set(list, section.name, names);
+      add_set(list, section.name);
       metadata_.lists.push_back(std::move(list));
     }
     if (labels_.empty()) return;
@@ -532,16 +506,15 @@ class AttachmentReader {
         if (condition.child_of_label("BCDataSet_t") != nullptr) ++labels["BCDataSet_t"];
       }
     };
-    for (const Node& base : reading_.tree.root.children) {
-      if (base.label != "CGNSBase_t") continue;
-      for (const Node& node : base.children) {
+    for (const Node& node : reading_.tree.root.child_of_label("CGNSBase_t")->children) {
+      if (node.label != "Zone_t") {
         const bool is_name_only = node.label == "Family_t" && node.children.empty();
-        if (node.label != "Zone_t" && !is_name_only) ++labels[node.label];
-        if (node.label != "Zone_t") continue;
-        for (const Node& part : node.children) {
-          if (part.label == "ZoneBC_t") count_conditions(part);
-          if (!is_one_of(part.label, kHeldByOthers)) ++labels[part.label];
-        }
+        if (!is_name_only) ++labels[node.label];
+        continue;
+      }
+      for (const Node& part : node.children) {
+        if (part.label == "ZoneBC_t") count_conditions(part);
+        if (!is_one_of(part.label, kHeldByOthers)) ++labels[part.label];
       }
     }
     for (const auto& [label, count] : labels) {
@@ -553,8 +526,8 @@ class AttachmentReader {
   CgnsMetadata& metadata_;
   int zone_ = 0;
   bool has_named_part_ = false;  // a ZoneSubRegion_t of the zone has data for a list of another node
-  std::map<std::pair<int, Association>, std::shared_ptr<const std::vector<Index>>> rows_;
-  std::vector<FoundSet> sets_;
+  std::vector<std::pair<int, std::string>> sets_;  // lists that become sets, and their names in the file
+  std::set<std::string> set_names_;
   NameNumbers numbers_;
   std::vector<std::int64_t> labels_;
   std::set<int> label_sections_;  // sections named only by their labels

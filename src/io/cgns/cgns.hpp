@@ -65,7 +65,7 @@ struct Zone {
 /// A section of elements.
 struct Section {
   int zone = 0;
-  std::string name;
+  std::string name = {};
   int type = 0;            ///< number of the element type, `kMixedElements`, `kPolygons` or `kPolyhedra`
   std::int64_t first = 1;  ///< number of its first element in the file
   Index count = 0;         ///< number of its elements in the file
@@ -199,9 +199,6 @@ inline constexpr std::string_view kSectionValues = "CellValues";
 
 /// Returns the members in their order, each once.
 std::vector<Index> unique_members(const std::vector<Index>& members);
-
-/// Returns the metadata of a mesh that was read from CGNS, null for other meshes.
-const CgnsMetadata* own_metadata(const Mesh& mesh);
 
 /// Makes the nodes of a file for a mesh of another format: one zone with a section for each type and label.
 /// Sets and arrays are left to `add_missing` (numbering.hpp).

@@ -22,14 +22,8 @@ using hdf5::Handle;
 constexpr int kMostLevels = 64;
 constexpr std::size_t kMostLetters = 32;
 constexpr std::string_view kDataSet = " data";
-
-/// An attribute that every node has, and the most bytes that libcgns has room for.
-struct NodeAttribute {
-  const char* name;
-  std::size_t most;
-};
-constexpr std::array kNodeAttributes{NodeAttribute{"name", 33}, NodeAttribute{"label", 33},
-                                     NodeAttribute{"type", 3}};
+/// Bytes of a number, by the alternatives of Values.
+constexpr std::array<std::size_t, 10> kSizes{8, 4, 1, 1, 2, 2, 4, 4, 8, 8};
 
 class Hdf5Check {
  public:
@@ -48,20 +42,23 @@ class Hdf5Check {
     throw InputError(name_, what, remedy);
   }
 
-  void check_attribute(hid_t group, const std::string& path, const NodeAttribute& wanted) const {
-    const std::string what = fmt::format("{}: the attribute '{}'", path.empty() ? "/" : path, wanted.name);
-    const Handle attribute(H5Aopen(group, wanted.name, H5P_DEFAULT), H5Aclose);
+  /// Returns the text of an attribute, for which libcgns has room for `most` bytes.
+  [[nodiscard]] std::string text_of(hid_t group, const std::string& path, const char* name,
+                                    std::size_t most) const {
+    const std::string what = fmt::format("{}: the attribute '{}'", path.empty() ? "/" : path, name);
+    const Handle attribute(H5Aopen(group, name, H5P_DEFAULT), H5Aclose);
     if (!attribute.is_open()) {
       fail(what + " is not there", "it may be an HDF5 file other than CGNS");
     }
     const Handle type(H5Aget_type(attribute.id()), H5Tclose);
     const Handle space(H5Aget_space(attribute.id()), H5Sclose);
     const bool fits = H5Tget_class(type.id()) == H5T_STRING && H5Tis_variable_str(type.id()) == 0 &&
-                      H5Tget_size(type.id()) <= wanted.most && H5Sget_simple_extent_npoints(space.id()) == 1;
-    if (!fits) fail(fmt::format("{} is not a text of at most {} bytes", what, wanted.most));
+                      H5Tget_size(type.id()) <= most && H5Sget_simple_extent_npoints(space.id()) == 1;
+    if (!fits) fail(fmt::format("{} is not a text of at most {} bytes", what, most));
     std::array<char, 34> text{};
     if (H5Aread(attribute.id(), type.id(), text.data()) < 0) fail(what + " cannot be read");
-    if (std::string_view(text.data(), text.size()).find('\0') >= wanted.most) fail(what + " has no end");
+    if (std::string_view(text.data(), text.size()).find('\0') >= most) fail(what + " has no end");
+    return text.data();
   }
 
   void check_group(hid_t group, const std::string& path, int level) {
@@ -70,8 +67,10 @@ class Hdf5Check {
     if (H5Oget_info(group, &info) < 0 || !seen_.insert(info.addr).second) {
       fail(path + " has two places in the file");
     }
-    for (const NodeAttribute& attribute : kNodeAttributes) check_attribute(group, path, attribute);
-    for (const std::string& name : names_in(group)) check_link(group, path, name, level);
+    (void)text_of(group, path, "name", 33);
+    (void)text_of(group, path, "label", 33);
+    const std::string type = text_of(group, path, "type", 3);
+    for (const std::string& name : names_in(group)) check_link(group, path, name, type, level);
   }
 
   [[nodiscard]] std::vector<std::string> names_in(hid_t group) const {
@@ -87,7 +86,8 @@ class Hdf5Check {
     return names;
   }
 
-  void check_link(hid_t group, const std::string& parent, const std::string& name, int level) {
+  void check_link(hid_t group, const std::string& parent, const std::string& name, const std::string& type,
+                  int level) {
     const std::string path = parent + "/" + name;
     H5L_info_t link;
     if (H5Lget_info(group, name.c_str(), &link, H5P_DEFAULT) < 0) fail(path + " cannot be read");
@@ -107,22 +107,11 @@ class Hdf5Check {
       // links of libcgns name their targets in datasets of characters
       const hdf5::DatasetInfo data = file_.info(path);
       if (data.shape.size() > 12) fail(path + " has more than 12 dimensions");
-      if (name == kDataSet) check_type(group, parent, data.alternative);
+      if (name == kDataSet && size_of_type(type) != kSizes.at(data.alternative)) {
+        fail(fmt::format("{} declares values of the type '{}' but has others", parent, type));
+      }
     } else if (kind != H5I_DATASET) {
       fail(path + " is neither a group nor a dataset");
-    }
-  }
-
-  /// Throws unless the type given by the attribute of a node has the size of its stored values.
-  void check_type(hid_t group, const std::string& path, std::size_t alternative) const {
-    // bytes of a number, by the alternatives of Values
-    constexpr std::array<std::size_t, 10> kSizes{8, 4, 1, 1, 2, 2, 4, 4, 8, 8};
-    const Handle attribute(H5Aopen(group, "type", H5P_DEFAULT), H5Aclose);
-    const Handle type(H5Aget_type(attribute.id()), H5Tclose);
-    std::array<char, 34> text{};
-    H5Aread(attribute.id(), type.id(), text.data());
-    if (size_of_type(text.data()) != kSizes.at(alternative)) {
-      fail(fmt::format("{} declares values of the type '{}' but has others", path, text.data()));
     }
   }
 

@@ -3,6 +3,7 @@
 #include "base/text.hpp"
 #include "io/cell_division.hpp"
 #include "io/cgns/numbering.hpp"
+#include "io/exact_values.hpp"
 #include "io/labels.hpp"
 #include "io/names.hpp"
 #include "io/unsupported.hpp"
@@ -60,33 +61,19 @@ class NodeNames {
 
 // ---- a file for a mesh of another format
 
-/// `starts`: the first cells of runs of consecutive cells. Returns, by the first cell of a run, the name of
-/// the smallest set that contains the run; leaves out runs that no set contains.
-std::map<Index, std::string> names_of_runs(const Mesh& mesh, const std::vector<Index>& starts) {
-  std::map<Index, std::string> names;
-  std::map<Index, std::size_t> sizes;
+/// Returns, for each section, the smallest set of cells that contains it; null if there is none.
+std::vector<const EntitySet*> sets_around(const Mesh& mesh, const CgnsMetadata& metadata) {
+  std::vector<const EntitySet*> smallest(metadata.sections.size());
   for (const EntitySet& set : mesh.sets) {
     if (set.association == Association::vertices) continue;
-    std::map<Index, Index> counts;  // members of each run
-    for (const Index c : set.members) {
-      ++counts[*(std::upper_bound(starts.begin(), starts.end(), c) - 1)];
-    }
-    for (const auto& [start, count] : counts) {
-      const auto next = std::upper_bound(starts.begin(), starts.end(), start);
-      const Index end = next == starts.end() ? mesh.cell_count() : *next;
-      const bool is_smaller = !sizes.contains(start) || set.members.size() < sizes[start];
-      if (count == end - start && is_smaller) {
-        names[start] = set.name;
-        sizes[start] = set.members.size();
-      }
+    std::map<Index, Index> counts;  // members in each section
+    for (const Index c : set.members) ++counts[metadata.section_of_cell[c]];
+    for (const auto& [s, count] : counts) {
+      const bool is_smaller = smallest[s] == nullptr || set.members.size() < smallest[s]->members.size();
+      if (count == metadata.sections[s].count && is_smaller) smallest[s] = &set;
     }
   }
-  return names;
-}
-
-bool needs_three_coordinates(const Mesh& mesh, int cell_dimension) {
-  return mesh.dimension == 3 || cell_dimension == 3 ||
-         std::any_of(mesh.points.begin(), mesh.points.end(), [](const Point& p) { return p[2] != 0; });
+  return smallest;
 }
 
 class MetadataMaker {
@@ -97,16 +84,14 @@ class MetadataMaker {
     CgnsMetadata& metadata = *metadata_;
     metadata.cell_dimension = std::max(1, mesh_.cells.highest_dimension());
     metadata.zones.push_back({"Zone", "I4", 0});
-    const int coordinates = needs_three_coordinates(mesh_, metadata.cell_dimension) ? 3 : 2;
+    const bool is_solid = mesh_.dimension == 3 || metadata.cell_dimension == 3;
+    const int coordinates = is_solid ? 3 : coordinates_of(mesh_.points, 2);
     Node zone = field_node(metadata, "Zone", "Zone_t", {.role = Field::Role::zone_size});
     zone.children = {text_node("ZoneType", "ZoneType_t", "Unstructured"), grid(coordinates)};
     add_sections(zone);
     Node base = integer_node("Base", "CGNSBase_t", {metadata.cell_dimension, coordinates});
-    base.children.push_back(std::move(zone));
-    Tree tree;
-    tree.root.children.push_back(version());
-    tree.root.children.push_back(std::move(base));
-    metadata.tree = std::make_shared<const Tree>(std::move(tree));
+    base.children = {std::move(zone)};
+    metadata.tree = std::make_shared<const Tree>(Tree{.root = {.children = {version(), std::move(base)}}});
     return metadata_;
   }
 
@@ -130,51 +115,54 @@ class MetadataMaker {
 
   /// Makes a section of each run of cells that have the same type and the same label or sets.
   void add_sections(Node& zone) {
+    std::vector<Section>& sections = metadata_->sections;
     const CellDivision division = divide_cells(mesh_, {.sets = true});
     const Labels labels = labels_of(mesh_, Association::cells);
     metadata_->has_labels =
         labels.any() && (division.by_labels || std::all_of(labels.values.begin(), labels.values.end(),
                                                            [](std::int64_t label) { return label == 0; }));
-    std::vector<Index> starts;
-    for (Index c = 0; c < mesh_.cell_count(); ++c) {
-      if (c == 0 || division.key_of_cell[c] != division.key_of_cell[c - 1]) starts.push_back(c);
-    }
-    const std::map<Index, std::string> names = names_of_runs(mesh_, starts);
-    NodeNames node_names(zone);
+    std::vector<const CellPart*> keys;  // of each section
     metadata_->section_of_cell.reserve(mesh_.cells.shapes.size());
-    Notes ignored;
-    for (std::size_t s = 0; s < starts.size(); ++s) {
-      const Index first = starts[s];
-      const Index end = s + 1 < starts.size() ? starts[s + 1] : mesh_.cell_count();
-      const CellPart& key = division.keys[division.key_of_cell[first]];
-      const ElementType* const type = element_type_of(key.shape, key.nodes);
-      if (type == nullptr) {
-        throw InvalidArgument(fmt::format(
-            "CGNS: a {} is written only with the cells and faces of the file that it was read from",
-            type_name(key.shape, key.nodes)));
+    for (Index c = 0; c < mesh_.cell_count(); ++c) {
+      const CellPart& key = division.keys[division.key_of_cell[c]];
+      if (c == 0 || &key != keys.back()) {
+        keys.push_back(&key);
+        sections.push_back({.type = type_of(key).number, .first = std::int64_t{c} + 1});
       }
-      const auto named = names.find(first);
+      ++sections.back().count;
+      metadata_->section_of_cell.push_back(index_size(sections) - 1);
+    }
+    const std::vector<const EntitySet*> sets = sets_around(mesh_, *metadata_);
+    NodeNames names(zone);
+    Notes ignored;
+    for (std::size_t s = 0; s < sections.size(); ++s) {
+      const CellPart& key = *keys[s];
       const bool is_boundary = dimension(key.shape) < metadata_->cell_dimension;
-      const std::string name = is_boundary && named != names.end() ? named->second
-                               : division.by_labels                ? name_of_label(*type, key.label)
-                                                                   : std::string(type->name);
-      add_section(zone, node_names.take(name, ignored), *type, first, end - first);
+      if (!is_boundary) metadata_->zones[0].cell_count += sections[s].count;
+      const std::string name = is_boundary && sets[s] != nullptr ? sets[s]->name
+                               : division.by_labels              ? name_of_label(type_of(key), key.label)
+                                                                 : std::string(type_of(key).name);
+      sections[s].name = names.take(name, ignored);
+      zone.children.push_back(section_node(static_cast<int>(s)));
       if (metadata_->has_labels) zone.children.back().children.push_back(label_node(key.label));
     }
   }
 
-  void add_section(Node& zone, const std::string& name, const ElementType& type, Index first, Index count) {
-    const auto s = static_cast<int>(metadata_->sections.size());
-    metadata_->sections.push_back(
-        {.name = name, .type = type.number, .first = std::int64_t{first} + 1, .count = count});
-    metadata_->section_of_cell.resize(static_cast<std::size_t>(first) + static_cast<std::size_t>(count), s);
-    if (dimension(type.shape) == metadata_->cell_dimension) metadata_->zones[0].cell_count += count;
-    Node node = integer_node(name, "Elements_t", {type.number, 0});
+  static const ElementType& type_of(const CellPart& key) {
+    if (const ElementType* const type = element_type_of(key.shape, key.nodes)) return *type;
+    throw InvalidArgument(
+        fmt::format("CGNS: a {} is written only with the cells and faces of the file that it was read from",
+                    type_name(key.shape, key.nodes)));
+  }
+
+  Node section_node(int s) {
+    const Section& section = metadata_->sections[s];
+    Node node = integer_node(section.name, "Elements_t", {section.type, 0});
     node.children = {
         field_node(*metadata_, "ElementRange", "IndexRange_t", {.role = Field::Role::range, .place = s}),
         field_node(*metadata_, "ElementConnectivity", "DataArray_t",
                    {.role = Field::Role::connectivity, .place = s})};
-    zone.children.push_back(std::move(node));
+    return node;
   }
 
   static Node label_node(std::int64_t label) {

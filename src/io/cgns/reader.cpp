@@ -1,14 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
 #include "io/cgns/reading.hpp"
-#include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
-#include <type_traits>
 #include <utility>
 
 // Reads zones: points and sections of elements.
@@ -24,6 +22,16 @@ int Reading::bind(Node& node, Field field) {
   std::string().swap(node.bytes);  // releases the memory, which an assignment would keep
   metadata->fields.push_back(std::move(field));
   return node.field;
+}
+
+std::vector<Index> Reading::rows_of(const Field& field) const {
+  if (field.section >= 0) {
+    return index_range(cells_of_section[field.section].first, cells_of_section[field.section].count);
+  }
+  if (field.list >= 0) return metadata->lists[field.list].members;
+  const ZonePlaces& zone = zones[field.place];
+  if (field.association == Association::cells) return zone.centred_cells;
+  return index_range(zone.first_vertex, zone.vertices);
 }
 
 int Reading::zone_named(std::string_view path) const {
@@ -43,17 +51,13 @@ Values numbers_of(const Node& node) {
 }
 
 std::vector<std::int64_t> whole_numbers(const Reading& reading, const Node& node, const std::string& path) {
-  return std::visit(
-      [&](const auto& numbers) -> std::vector<std::int64_t> {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        if constexpr (std::is_integral_v<Number>) {
-          return {numbers.begin(), numbers.end()};
-        } else {
-          reading.fail(path, fmt::format("has values of the type '{}'", node.type),
-                       "whole numbers, I4 or I8, are expected");
-        }
-      },
-      numbers_of(node));
+  const Values values = numbers_of(node);
+  if (!are_integers(values)) {
+    reading.fail(path, fmt::format("has values of the type '{}'", node.type),
+                 "whole numbers, I4 or I8, are expected");
+  }
+  return with_integers(
+      values, [](const auto& numbers) { return std::vector<std::int64_t>(numbers.begin(), numbers.end()); });
 }
 
 namespace {

@@ -28,13 +28,10 @@ struct ZonePlaces {
   std::map<std::string, int> steps = {};  ///< time step of solutions and grids, from 1, if there are several
 };
 
-/// The values of one node, which belong to the vertices or cells `rows`.
+/// The values of one node.
 struct Piece {
   std::string solution;
   std::string name;
-  int zone = 0;
-  Association association = Association::vertices;
-  std::shared_ptr<const std::vector<Index>> rows;
   Values values;
   int field = 0;
 };
@@ -63,6 +60,8 @@ struct Reading {
     }
     return zone.first_vertex + static_cast<Index>(number) - 1;
   }
+  /// Returns the vertices or cells that have the values of a field, in the order of the values.
+  [[nodiscard]] std::vector<Index> rows_of(const Field& field) const;
   /// Returns the zone of that name or path, −1 if there is none.
   [[nodiscard]] int zone_named(std::string_view path) const;
 

@@ -80,7 +80,8 @@ class CgioFile {
                      writing_ ? "is the disk full?" : "the file may be damaged");
   }
 
-  [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
+  [[noreturn]] void fail(const std::string& what,
+                         const std::string& remedy = "the file may be damaged") const {
     throw InputError(name_, what, remedy);
   }
 
@@ -102,7 +103,7 @@ class TreeReader {
     const int number = file_.number();
     const std::string place = parent.empty() ? "the root" : parent;
     if (depth > kDeepest || nodes_left_-- == 0) {
-      file_.fail(place + ": nodes lie too deep or are too many", "the file may be damaged");
+      file_.fail(place + ": nodes lie too deep or are too many");
     }
     int link = 0;
     file_.check(cgio_is_link(number, id, &link), place);
@@ -111,7 +112,7 @@ class TreeReader {
       Text text{};
       file_.check(cgio_get_name(number, id, text.data()), place);
       node.name = without_filling(text);
-      if (node.name.empty()) file_.fail(place + " has a child without a name", "the file may be damaged");
+      if (node.name.empty()) file_.fail(place + " has a child without a name");
     }
     const std::string path = depth > 0 ? parent + "/" + node.name : std::string();
     if (link > 0) {
@@ -121,7 +122,7 @@ class TreeReader {
     int children = 0;
     file_.check(cgio_number_children(number, id, &children), place);
     if (children < 0 || static_cast<std::uint64_t>(children) > nodes_left_) {
-      file_.fail(fmt::format("{} claims {} children", place, children), "the file may be damaged");
+      file_.fail(fmt::format("{} claims {} children", place, children));
     }
     std::vector<double> ids(static_cast<std::size_t>(children));
     int found = 0;
@@ -129,8 +130,7 @@ class TreeReader {
       file_.check(cgio_children_ids(number, id, 1, children, &found, ids.data()), place);
     }
     if (found != children) {
-      file_.fail(fmt::format("{} has {} children and gives {}", place, children, found),
-                 "the file may be damaged");
+      file_.fail(fmt::format("{} has {} children and gives {}", place, children, found));
     }
     node.children.reserve(ids.size());
     for (const double child : ids) {
@@ -188,12 +188,10 @@ class TreeWriter {
 
   void write(const Node& node, double parent, const std::string& path) const {
     poll();
-    if (node.field >= 0) {
-      Node filled{.name = node.name, .label = node.label, .field = node.field};
-      fill_(filled);
-      return write_filled(filled, node.children, parent, path + "/" + node.name);
-    }
-    write_filled(node, node.children, parent, path + "/" + node.name);
+    if (node.field < 0) return write_filled(node, node.children, parent, path + "/" + node.name);
+    Node filled{.name = node.name, .label = node.label, .field = node.field};
+    fill_(filled);
+    write_filled(filled, node.children, parent, path + "/" + node.name);
   }
 
  private:

@@ -71,19 +71,21 @@ constexpr std::array kWedge{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15
 constexpr std::array kHexahedron{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
                                  18, 19, 12, 13, 14, 15, 24, 22, 21, 23, 20, 25, 26};
 
-}  // namespace
-
-const ElementType* element_type(std::int64_t number) {
-  const auto* const found = std::find_if(kTypes.begin(), kTypes.end(),
-                                         [=](const ElementType& type) { return type.number == number; });
+/// Returns the first type that `is_wanted`, null if there is none.
+template <class IsWanted>
+const ElementType* first_type(const IsWanted& is_wanted) {
+  const auto* const found = std::find_if(kTypes.begin(), kTypes.end(), is_wanted);
   return found == kTypes.end() ? nullptr : found;
 }
 
+}  // namespace
+
+const ElementType* element_type(std::int64_t number) {
+  return first_type([=](const ElementType& type) { return type.number == number; });
+}
+
 const ElementType* element_type_of(Shape shape, int nodes) {
-  const auto* const found = std::find_if(kTypes.begin(), kTypes.end(), [=](const ElementType& type) {
-    return type.shape == shape && type.nodes == nodes;
-  });
-  return found == kTypes.end() ? nullptr : found;
+  return first_type([=](const ElementType& type) { return type.shape == shape && type.nodes == nodes; });
 }
 
 std::span<const int> file_order(Shape shape, int nodes) {

@@ -25,7 +25,7 @@ namespace {
 
 void move_positions(std::vector<Index>& positions, std::span<const Index> places) {
   for (Index& position : positions) {
-    if (position >= 0) position = places[static_cast<std::size_t>(position)];
+    if (position >= 0) position = places[position];
   }
 }
 
@@ -35,16 +35,11 @@ std::vector<Index> moved_values(const std::vector<Index>& values, std::span<cons
   Index kept = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (places[i] < 0) continue;
-    result[static_cast<std::size_t>(places[i])] = values[i];
+    result[places[i]] = values[i];
     ++kept;
   }
   result.resize(static_cast<std::size_t>(kept));
   return result;
-}
-
-void move_parents(Parents& parents, std::span<const Index> cells) {
-  if (!parents.of_polygons) move_positions(parents.rows, cells);
-  move_positions(parents.cells, cells);
 }
 
 /// Returns whether the vertices of a cell are the corners of a polyhedron's faces, each once.
@@ -265,6 +260,11 @@ class Pruner {
   Notes& notes_;
 };
 
+/// Returns the metadata of a mesh that was read from CGNS, null for other meshes.
+const CgnsMetadata* own_metadata(const Mesh& mesh) {
+  return dynamic_cast<const CgnsMetadata*>(mesh.format_metadata.get());
+}
+
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
   const ElementType* const type = element_type_of(shape, vertices);
   constexpr int kLastOfSecondOrder = 21;
@@ -283,10 +283,6 @@ Permutation places(const Mesh& mesh, std::vector<Index>& blocks) {
 
 }  // namespace
 
-const CgnsMetadata* own_metadata(const Mesh& mesh) {
-  return dynamic_cast<const CgnsMetadata*>(mesh.format_metadata.get());
-}
-
 std::shared_ptr<const FormatMetadata> CgnsMetadata::moved(std::span<const Index> vertices,
                                                           std::span<const Index> cells) const {
   auto result = std::make_shared<CgnsMetadata>(*this);
@@ -300,7 +296,10 @@ std::shared_ptr<const FormatMetadata> CgnsMetadata::moved(std::span<const Index>
     result->section_of_cell = moved_values(section_of_cell, cells);
     move_positions(result->cell_of_polygon, cells);
     move_positions(result->cell_of_polyhedron, cells);
-    for (Parents& of_section : result->parents) move_parents(of_section, cells);
+    for (Parents& of_section : result->parents) {
+      if (!of_section.of_polygons) move_positions(of_section.rows, cells);
+      move_positions(of_section.cells, cells);
+    }
   }
   if (!vertices.empty() && polyhedra != nullptr) {
     if (vertex_places.empty()) {

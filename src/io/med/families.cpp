@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <map>
 #include <type_traits>
 #include <unordered_map>
@@ -96,62 +97,12 @@ void read_families_of(Reading& reading, Association association) {
   }
 }
 
-/// Gives a number to each combination of a family and groups that vertices or cells belong to.
-class Combinations {
- public:
-  /// Starts with the family of each item, and no groups.
-  explicit Combinations(const std::vector<std::int64_t>& families) {
-    of_item_.reserve(families.size());
-    std::unordered_map<std::int64_t, std::size_t> known;
-    std::size_t last = 0;  // neighbouring items mostly have the same family
-    for (const std::int64_t family : families) {
-      if (all_.empty() || all_[last].family != family) {
-        const auto [found, is_new] = known.try_emplace(family, all_.size());
-        if (is_new) all_.push_back({family, kNone, kNone});
-        last = found->second;
-      }
-      of_item_.push_back(last);
-    }
-  }
-
-  /// Adds a group that these items belong to.
-  void add(const std::string& group, const std::vector<Index>& members) {
-    std::unordered_map<std::size_t, std::size_t> with_group;
-    for (const Index member : members) {
-      std::size_t& own = of_item_[static_cast<std::size_t>(member)];
-      const auto [found, is_new] = with_group.try_emplace(own, all_.size());
-      if (is_new) all_.push_back({all_[own].family, own, groups_.size()});
-      own = found->second;
-    }
-    groups_.push_back(group);
-  }
-
-  [[nodiscard]] std::size_t size() const noexcept { return all_.size(); }
-  /// Returns the old family of the items of a combination, with the groups that these items have gained.
-  [[nodiscard]] Family family_of(std::size_t combination) const {
-    Family result{all_[combination].family};
-    for (std::size_t c = combination; all_[c].without_last != kNone; c = all_[c].without_last) {
-      result.groups.push_back(groups_[all_[c].last_group]);
-    }
-    std::reverse(result.groups.begin(), result.groups.end());
-    return result;
-  }
-  [[nodiscard]] const std::vector<std::size_t>& of_item() const noexcept { return of_item_; }
-
- private:
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
-  /// A family and groups, stored as a chain with one group in each link: an item may be in thousands of
-  /// groups.
-  struct Combination {
-    std::int64_t family;
-    std::size_t without_last;  ///< the combination without its last group; kNone if it has no groups
-    std::size_t last_group;
-  };
-
-  std::vector<Combination> all_;
-  std::vector<std::string> groups_;
-  std::vector<std::size_t> of_item_;
+/// A family and groups that vertices or cells belong to, stored as a chain with one group in each link: an
+/// item may be in thousands of groups.
+struct Combination {
+  std::int64_t family;
+  std::size_t without_last;       ///< the combination without its last group
+  const std::string* last_group;  ///< null: no groups
 };
 
 class FamilyWriter {
@@ -161,35 +112,72 @@ class FamilyWriter {
   }
 
   std::vector<std::int64_t> write() {
-    const Mesh& mesh = writing_.mesh;
-    std::vector<std::int64_t> numbers = start();
-    Combinations combinations(numbers);
-    add_sets(combinations);
-    std::vector<bool> is_used(combinations.size(), false);
-    for (const std::size_t combination : combinations.of_item()) is_used[combination] = true;
-    std::vector<std::int64_t> number_of(combinations.size(), 0);
+    start();
+    add_sets();
+    std::vector<bool> is_used(combinations_.size(), false);
+    for (const std::size_t combination : of_item_) is_used[combination] = true;
+    std::vector<std::int64_t> number_of(combinations_.size(), 0);
     for (std::size_t c = 0; c < number_of.size(); ++c) {
-      if (is_used[c]) number_of[c] = number_for(combinations.family_of(c));
+      if (is_used[c]) number_of[c] = number_for(family_of(c));
     }
     if (std::all_of(number_of.begin(), number_of.end(), [](std::int64_t number) { return number == 0; })) {
       return {};
     }
-    numbers.resize(item_count(mesh, association_));
-    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = number_of[combinations.of_item()[i]];
+    std::vector<std::int64_t> numbers;
+    numbers.reserve(of_item_.size());
+    for (const std::size_t combination : of_item_) numbers.push_back(number_of[combination]);
     return numbers;
   }
 
  private:
-  /// Returns the family of each item in the MED file that the mesh came from; 0 for meshes of other formats.
-  std::vector<std::int64_t> start() {
+  /// Starts with the family of each item in the MED file that the mesh came from, and no groups.
+  void start() {
     const MedLayout& layout = writing_.layout;
-    std::vector<std::int64_t> none(item_count(writing_.mesh, association_), 0);
-    if (layout.is_made) return none;
-    writing_.placed.insert(find_array(writing_.mesh, layout.families_array, association_));
-    return numbers_in(writing_.mesh, layout.families_array, association_);
+    const Mesh& mesh = writing_.mesh;
+    std::vector<std::int64_t> families;
+    if (layout.is_made) {
+      families.resize(item_count(mesh, association_), 0);
+    } else {
+      writing_.placed.insert(find_array(mesh, layout.families_array, association_));
+      families = numbers_in(mesh, layout.families_array, association_);
+    }
+    of_item_.reserve(families.size());
+    std::unordered_map<std::int64_t, std::size_t> known;
+    std::size_t last = 0;  // neighbouring items mostly have the same family
+    for (const std::int64_t family : families) {
+      if (combinations_.empty() || combinations_[last].family != family) {
+        const auto [found, is_new] = known.try_emplace(family, combinations_.size());
+        if (is_new) combinations_.push_back({family, 0, nullptr});
+        last = found->second;
+      }
+      of_item_.push_back(last);
+    }
   }
 
-  void add_sets(Combinations& combinations) {
+  /// Adds a group that these items belong to.
+  void add_group(std::string name, const std::vector<Index>& members) {
+    const std::string& group = groups_.emplace_back(std::move(name));
+    std::unordered_map<std::size_t, std::size_t> with_group;
+    for (const Index member : members) {
+      std::size_t& own = of_item_[member];
+      const auto [found, is_new] = with_group.try_emplace(own, combinations_.size());
+      if (is_new) combinations_.push_back({combinations_[own].family, own, &group});
+      own = found->second;
+    }
+  }
+
+  /// Returns the old family of the items of a combination, with the groups that these items have gained.
+  [[nodiscard]] Family family_of(std::size_t combination) const {
+    const Combination* link = &combinations_[combination];
+    Family result{link->family};
+    for (; link->last_group != nullptr; link = &combinations_[link->without_last]) {
+      result.groups.push_back(*link->last_group);
+    }
+    std::reverse(result.groups.begin(), result.groups.end());
+    return result;
+  }
+
+  void add_sets() {
     DistinctNames names(kLongestGroup);
     bool any = false;
     for (const EntitySet& set : writing_.mesh.sets) {
@@ -198,14 +186,14 @@ class FamilyWriter {
         note_set_empty(set, writing_.notes);
         continue;
       }
-      combinations.add(unused_name(set.name, names), set.members);
+      add_group(unused_name(set.name, names), set.members);
       any = true;
     }
-    if (!any && writing_.layout.is_made) add_labels(combinations);
+    if (!any && writing_.layout.is_made) add_labels();
   }
 
   /// Makes groups from the labels of a mesh that has no sets.
-  void add_labels(Combinations& combinations) {
+  void add_labels() {
     const Labels labels = labels_of(writing_.mesh, association_);
     std::map<std::int64_t, std::vector<Index>> members;
     for (std::size_t i = 0; i < labels.values.size(); ++i) {
@@ -213,7 +201,7 @@ class FamilyWriter {
       if (members.size() > kMostLabels) return;
     }
     for (const auto& [label, of_label] : members) {
-      combinations.add(fmt::format("{}_{}", kLabel, label), of_label);
+      add_group(fmt::format("{}_{}", kLabel, label), of_label);
     }
     if (association_ == Association::cells) {
       note_number_markers(writing_.mesh, "groups named label_N", writing_.notes);
@@ -277,6 +265,9 @@ class FamilyWriter {
 
   Writing& writing_;
   Association association_;
+  std::vector<Combination> combinations_;
+  std::vector<std::size_t> of_item_;  // the combination of each vertex or cell
+  std::deque<std::string> groups_;
   std::map<std::int64_t, std::vector<std::string>> groups_of_;  // each family, by its number
   std::map<std::vector<std::string>, std::int64_t> number_of_;  // the first family with these groups
   std::int64_t last_ = 0;                                       // number farthest from 0

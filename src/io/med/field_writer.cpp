@@ -326,9 +326,9 @@ class FieldWriter {
     const bool on_vertices = step.array->association == Association::vertices;
     for (const auto& [geometry, range] : writing_.ranges) {
       if (on_vertices != (geometry == nullptr)) continue;
-      const std::string support = on_vertices ? "NOE" : fmt::format("MAI.{}", geometry->name);
+      const std::string support = on_vertices ? "/NOE" : fmt::format("/MAI.{}", geometry->name);
       write_support({.field = name,
-                     .support = group + "/" + support,
+                     .support = group + support,
                      .type = geometry,
                      .components = static_cast<std::size_t>(step.array->components)},
                     *step.array, type);

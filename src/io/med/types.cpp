@@ -30,21 +30,23 @@ constexpr std::array kWedge{0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13, 17
 constexpr std::array kHexahedron{0,  3,  2,  1,  4,  7,  6,  5,  11, 10, 9,  8,  15, 14,
                                  13, 12, 16, 19, 18, 17, 24, 20, 23, 21, 22, 25, 26};
 
+/// Returns the first type that `is_wanted`, null if there is none.
+template <class IsWanted>
+const GeometryType* first_type(const IsWanted& is_wanted) {
+  const auto* const found = std::find_if(kGeometryTypes.begin(), kGeometryTypes.end(), is_wanted);
+  return found == kGeometryTypes.end() ? nullptr : found;
+}
+
 }  // namespace
 
 std::span<const GeometryType> geometry_types() { return kGeometryTypes; }
 
 const GeometryType* geometry_type(std::string_view name) {
-  const auto* const found = std::find_if(kGeometryTypes.begin(), kGeometryTypes.end(),
-                                         [&](const GeometryType& type) { return type.name == name; });
-  return found == kGeometryTypes.end() ? nullptr : found;
+  return first_type([&](const GeometryType& type) { return type.name == name; });
 }
 
 const GeometryType* geometry_type(Shape shape, int nodes) {
-  const auto* const found =
-      std::find_if(kGeometryTypes.begin(), kGeometryTypes.end(),
-                   [&](const GeometryType& type) { return type.shape == shape && type.nodes == nodes; });
-  return found == kGeometryTypes.end() ? nullptr : found;
+  return first_type([&](const GeometryType& type) { return type.shape == shape && type.nodes == nodes; });
 }
 
 std::span<const int> mesh_order(const GeometryType& type) {
