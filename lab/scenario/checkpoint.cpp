@@ -31,21 +31,18 @@ std::uint32_t checksum_of(std::string_view bytes) {
 class Packer {
  public:
   template <class Number>
-  void number(Number value) {
+  void number(Number value, std::string_view /*what*/ = {}) {
     static_assert(std::is_arithmetic_v<Number>);
     std::array<char, sizeof(Number)> raw{};
     std::memcpy(raw.data(), &value, sizeof(Number));
     bytes_.append(raw.data(), raw.size());
   }
-  void count(std::size_t size) { number(static_cast<std::uint64_t>(size)); }
-  void text(std::string_view value) {
-    count(value.size());
-    bytes_ += value;
+  template <class List>
+  void count(const List& list, std::string_view /*what*/, std::int64_t /*min_bytes*/) {
+    number(static_cast<std::uint64_t>(list.size()));
   }
-  void bytes(std::string_view value) { bytes_ += value; }
-  void point(const Point& value) {
-    for (const double x : value) number(x);
-  }
+  void block(std::string_view value, std::string_view /*what*/ = {}) { bytes_ += value; }
+
   /// Fills in the length, appends the checksum and returns the bytes.
   std::string finish() {
     const std::uint64_t length = bytes_.size() + sizeof(std::uint32_t);
@@ -58,103 +55,78 @@ class Packer {
   std::string bytes_;
 };
 
-Index read_count(Scanner& file, std::string_view what, std::int64_t min_bytes) {
-  return file.checked_count(file.binary<std::int64_t>(what), what, min_bytes);
+/// Reads what a Packer wrote. `what` is for errors.
+class Unpacker {
+ public:
+  explicit Unpacker(Scanner& file) : file_(file) {}
+  template <class Number>
+  void number(Number& value, std::string_view what) {
+    value = file_.binary<Number>(what);
+  }
+  /// Reads the size of a list whose entries take `min_bytes` or more.
+  template <class List>
+  void count(List& list, std::string_view what, std::int64_t min_bytes) {
+    list.resize(file_.checked_count(file_.binary<std::int64_t>(what), what, min_bytes));
+  }
+  void block(std::string& value, std::string_view what) {
+    value = file_.binary_block(static_cast<std::int64_t>(value.size()), what);
+  }
+
+ private:
+  Scanner& file_;
+};
+
+template <class File, class Vector>
+void visit_point(File& file, Vector& point) {
+  for (auto& x : point) file.number(x, "a coordinate");
 }
 
-Point read_point(Scanner& file) {
-  Point point{};
-  for (double& x : point) x = file.binary<double>("a coordinate");
-  return point;
+template <class File, class State>
+void visit_state(File& file, State& state) {
+  file.number(state.step, "the number of steps");
+  file.number(state.time, "the time");
+  file.count(state.positions, "the number of vertices", 2 * sizeof(Point));
+  if constexpr (!std::is_const_v<State>) state.velocities.resize(state.positions.size());
+  for (auto& point : state.positions) visit_point(file, point);
+  for (auto& velocity : state.velocities) visit_point(file, velocity);
+  file.count(state.memory, "the numbers kept", sizeof(double));
+  for (auto& number : state.memory) file.number(number, "a number kept");
 }
 
-std::string read_text(Scanner& file) {
-  const Index size = read_count(file, "the length of a text", 1);
-  return std::string(file.binary_block(size, "a text"));
-}
-
-void pack(const Balance& balance, Packer& out) {
-  for (const double energy : {balance.kinetic, balance.elastic, balance.potential}) out.number(energy);
-  out.point(balance.momentum);
-  out.point(balance.angular_momentum);
-}
-
-Balance read_balance(Scanner& file) {
-  Balance balance;
-  for (double* const energy : {&balance.kinetic, &balance.elastic, &balance.potential})
-    *energy = file.binary<double>("an energy");
-  balance.momentum = read_point(file);
-  balance.angular_momentum = read_point(file);
-  return balance;
-}
-
-/// Calls `work` on all numbers of a step, in the order of the file.
-template <class Step, class Work>
-void visit_numbers(Step& step, Work work) {
+template <class File, class Step>
+void visit_step(File& file, Step& step) {
+  constexpr std::string_view kWhat = "a number of a step";
   auto& report = step.report;
-  work(report.newton_iterations);
-  work(report.cg_iterations);
-  work(report.admm_iterations);
-  work(report.contact_iterations);
-  work(report.contacts);
-  work(report.vertices_in_itself);
-  work(report.newton_residual);
-  work(report.residual);
-  work(report.penetration);
+  for (auto* const number : {&report.newton_iterations, &report.cg_iterations, &report.admm_iterations,
+                             &report.contact_iterations, &report.contacts, &report.vertices_in_itself})
+    file.number(*number, kWhat);
   auto& seconds = report.seconds;
-  for (auto* const part :
-       {&seconds.total, &seconds.assembly, &seconds.solve, &seconds.local, &seconds.global,
-        &seconds.collision, &seconds.triangulation, &seconds.order, &seconds.motion, &report.time_step})
-    work(*part);
-  work(step.shape_distance);
-}
-constexpr std::int64_t kMinStepBytes = 6 * 4 + 14 * 8;
-
-void pack(const MotionRecord& record, Packer& out) {
-  out.count(record.steps.size());
-  for (const StepRecord& step : record.steps) {
-    visit_numbers(step, [&](const auto& number) { out.number(number); });
-  }
-  out.count(record.balances.size());
-  for (const Balance& balance : record.balances) pack(balance, out);
-  out.count(record.warnings.size());
-  for (const WarningRecord& warning : record.warnings) {
-    out.text(warning.first);
-    out.number(warning.first_step);
-    out.number(warning.count);
-  }
+  for (auto* const number :
+       {&report.newton_residual, &report.residual, &report.penetration, &seconds.total, &seconds.assembly,
+        &seconds.solve, &seconds.local, &seconds.global, &seconds.collision, &seconds.triangulation,
+        &seconds.order, &seconds.motion, &report.time_step, &step.shape_distance})
+    file.number(*number, kWhat);
 }
 
-MotionRecord read_record(Scanner& file) {
-  MotionRecord record;
-  record.steps.resize(read_count(file, "the number of steps", kMinStepBytes));
-  for (StepRecord& step : record.steps) {
-    visit_numbers(step, [&](auto& number) {
-      number = file.binary<std::remove_reference_t<decltype(number)>>("a number of a step");
-    });
+template <class File, class Record>
+void visit_record(File& file, Record& record) {
+  constexpr std::int64_t kMinStepBytes = 6 * 4 + 14 * 8;
+  file.count(record.steps, "the number of steps", kMinStepBytes);
+  for (auto& step : record.steps) visit_step(file, step);
+  file.count(record.balances, "the number of energies", 3 * sizeof(double) + 2 * sizeof(Point));
+  for (auto& balance : record.balances) {
+    for (auto* const energy : {&balance.kinetic, &balance.elastic, &balance.potential})
+      file.number(*energy, "an energy");
+    visit_point(file, balance.momentum);
+    visit_point(file, balance.angular_momentum);
   }
-  record.balances.resize(read_count(file, "the number of energies", 72));
-  for (Balance& balance : record.balances) balance = read_balance(file);
-  record.warnings.resize(read_count(file, "the number of warnings", 16));
-  for (WarningRecord& warning : record.warnings) {
-    warning.first = read_text(file);
-    warning.first_step = file.binary<Index>("the step of a warning");
-    warning.count = file.binary<Index>("the count of a warning");
+  file.count(record.warnings, "the number of warnings", 16);
+  for (auto& warning : record.warnings) {
+    file.count(warning.first, "the length of a text", 1);
+    file.block(warning.first, "a text");
+    file.number(warning.first_step, "the step of a warning");
+    file.number(warning.count, "the count of a warning");
   }
-  return record;
-}
-
-MotionState read_state(Scanner& file) {
-  MotionState state;
-  state.step = file.binary<Index>("the number of steps");
-  state.time = file.binary<double>("the time");
-  state.positions.resize(read_count(file, "the number of vertices", 48));
-  state.velocities.resize(state.positions.size());
-  for (Point& point : state.positions) point = read_point(file);
-  for (Point& velocity : state.velocities) velocity = read_point(file);
-  state.memory.resize(read_count(file, "the numbers kept", 8));
-  for (double& number : state.memory) number = file.binary<double>("a number kept");
-  return state;
 }
 
 /// Checks the header and leaves the scanner after it.
@@ -193,22 +165,15 @@ void read_header(Scanner& file) {
 
 void write_checkpoint(const Checkpoint& checkpoint, const std::filesystem::path& path) {
   Packer out;
-  out.bytes(kMagic);
+  out.block(kMagic);
   out.number(kOrderMark);
   out.number(kCheckpointVersion);
   out.number(std::uint64_t{0});  // the length, filled in by finish
   out.number(checkpoint.fingerprint.mesh);
   out.number(checkpoint.fingerprint.order);
   out.number(checkpoint.fingerprint.parameters);
-  const MotionState& state = checkpoint.state;
-  out.number(state.step);
-  out.number(state.time);
-  out.count(state.positions.size());
-  for (const Point& point : state.positions) out.point(point);
-  for (const Point& velocity : state.velocities) out.point(velocity);
-  out.count(state.memory.size());
-  for (const double number : state.memory) out.number(number);
-  pack(checkpoint.record, out);
+  visit_state(out, checkpoint.state);
+  visit_record(out, checkpoint.record);
   OutputFile file(path);
   file.write(out.finish());
   file.commit();
@@ -232,8 +197,9 @@ Checkpoint read_checkpoint(const FilePath& path, const Fingerprint& expected) {
            "give the --vertices, --elements and --order-every that it was written with");
   if (result.fingerprint.parameters != expected.parameters)
     refuse("is of another scenario", "give the scenario, --preconditioner and --precision of its run");
-  result.state = read_state(file);
-  result.record = read_record(file);
+  Unpacker in(file);
+  visit_state(in, result.state);
+  visit_record(in, result.record);
   return result;
 }
 
