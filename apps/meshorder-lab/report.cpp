@@ -6,7 +6,7 @@
 #include "io/openfoam/cell_order.hpp"
 #include "io/stream/output_file.hpp"
 #include "lab.hpp"
-#include "lab/report/comparison/comparison_page.hpp"
+#include "lab/report/comparison/comparison.hpp"
 #include "lab/report/page/study_page.hpp"
 #include "lab/study/folder.hpp"
 #include "lab/study/mesh_study.hpp"
@@ -75,13 +75,9 @@ OrderCosts costs_of(const MeshOrderRecord& order, std::size_t kernels) {
 /// Adds the verdict of `info` from the times in this record, if the record has the orders that `info`
 /// compares.
 void add_verdict(MeshRecord& record, const Steadiness& steadiness, bool is_matrix) {
-  const auto order = [&](std::string_view name) {
-    return std::find_if(record.orders.begin(), record.orders.end(),
-                        [&](const MeshOrderRecord& one) { return one.ordering == name; });
-  };
-  const auto as_it_is = order(kAsItIs);
-  const auto ordered = order(kOrdered);
-  if (as_it_is == record.orders.end() || ordered == record.orders.end()) return;
+  const MeshOrderRecord* const as_it_is = find_order(record, kAsItIs);
+  const MeshOrderRecord* const ordered = find_order(record, kOrdered);
+  if (as_it_is == nullptr || ordered == nullptr) return;
   Advice advice;
   advice.is_matrix = is_matrix;
   advice.doubt = reason_to_doubt(steadiness);
@@ -100,12 +96,9 @@ void add_verdict(MeshRecord& record, const Steadiness& steadiness, bool is_matri
 /// Returns the file's name without its extension, with a number if another mesh has that name.
 std::string unique_name(const std::string& file, const std::vector<MeshRecord>& others) {
   const std::string stem = fs::path(file).stem().string();
-  const auto is_taken = [&](const std::string& name) {
-    return std::any_of(others.begin(), others.end(),
-                       [&](const MeshRecord& other) { return other.name == name; });
-  };
   std::string name = stem;
-  for (int number = 2; is_taken(name); ++number) name = fmt::format("{}-{}", stem, number);
+  for (int number = 2; find_named(others, name) != nullptr; ++number)
+    name = fmt::format("{}-{}", stem, number);
   return name;
 }
 
@@ -192,8 +185,7 @@ void report_on_meshes(Console& console, const ReportArguments& arguments) {
   }
   std::erase_if(page.results.orderings, [&](const OrderingSpec& ordering) {
     return std::ranges::none_of(page.results.meshes, [&](const MeshRecord& mesh) {
-      return std::ranges::any_of(
-          mesh.orders, [&](const MeshOrderRecord& order) { return order.ordering == ordering.name; });
+      return find_order(mesh, ordering.name) != nullptr;
     });
   });
   progress.stage("writing " + output, 0.98, 1);

@@ -8,6 +8,7 @@
 #include "lab/report/page/study_page.hpp"
 #include "lab/report/tables/each_table.hpp"
 #include "lab/study/results_json.hpp"
+#include "lab/study/stepper.hpp"
 #include "lab/study/study_run.hpp"
 #include "progress.hpp"
 
@@ -17,6 +18,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
@@ -51,9 +53,7 @@ StudyPlan plan_of(const ReproduceArguments& arguments, Console& console) {
   }
   for (const std::string& order : arguments.orders) {
     OrderingSpec ordering = study_ordering(order);
-    const bool known = std::any_of(plan.orderings.begin(), plan.orderings.end(),
-                                   [&](const OrderingSpec& other) { return other.name == ordering.name; });
-    if (!known) plan.orderings.push_back(std::move(ordering));
+    if (find_named(plan.orderings, ordering.name) == nullptr) plan.orderings.push_back(std::move(ordering));
   }
   plan.threads = arguments.threads > 0 ? arguments.threads : thread_count();
   plan.pin = !arguments.no_pin;
@@ -144,6 +144,16 @@ void add_reproduce(CLI::App& subcommand) {
   add_reading_options(subcommand);
   add_common(subcommand, *arguments);
   subcommand.callback([arguments] { run(*arguments); });
+}
+
+void add_serve_steps(CLI::App& subcommand) {
+  subcommand.description("Serve a study: read tasks on standard input and simulate them");
+  subcommand.group("");  // for `reproduce` only: not shown in the help
+  const auto arguments = std::make_shared<Common>();
+  add_reading_options(subcommand);
+  add_common(subcommand, *arguments);
+  subcommand.callback(
+      [arguments] { with_threads(arguments->threads, [] { serve_steps(std::cin, std::cout); }); });
 }
 
 }  // namespace meshorder::command

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshorder {
@@ -157,5 +158,28 @@ struct StudyResults {
 
   bool operator==(const StudyResults&) const = default;
 };
+
+/// Returns the record of that name in a list; nullptr if there is none.
+template <class Records>
+auto find_named(Records& records, std::string_view name) -> decltype(records.data()) {
+  for (auto& record : records) {
+    if (record.name == name) return &record;
+  }
+  return nullptr;
+}
+
+/// Returns a mesh or scenario record's entry for an order; nullptr if it was not computed or no run is
+/// finished.
+template <class Record>
+auto find_order(const Record& record, std::string_view ordering) -> decltype(record.orders.data()) {
+  for (auto& order : record.orders) {
+    if (order.ordering != ordering) continue;
+    if constexpr (requires { order.runs; }) {
+      if (order.runs.empty()) return nullptr;
+    }
+    return &order;
+  }
+  return nullptr;
+}
 
 }  // namespace meshorder

@@ -108,13 +108,9 @@ std::optional<Index> break_even_step(const std::vector<double>& saved_by_step, d
 
 /// Returns the cost of an order of that mesh, s; infinite if it is not known.
 double order_seconds(const StudyResults& results, const std::string& mesh, const std::string& ordering) {
-  for (const MeshRecord& record : results.meshes) {
-    if (record.name != mesh) continue;
-    for (const MeshOrderRecord& order : record.orders) {
-      if (order.ordering == ordering) return order.seconds;
-    }
-  }
-  return std::numeric_limits<double>::infinity();
+  const MeshRecord* const record = find_named(results.meshes, mesh);
+  const MeshOrderRecord* const order = record == nullptr ? nullptr : find_order(*record, ordering);
+  return order == nullptr ? std::numeric_limits<double>::infinity() : order->seconds;
 }
 
 void summarise(const StudyResults& results, ScenarioRecord& scenario) {
@@ -122,10 +118,8 @@ void summarise(const StudyResults& results, ScenarioRecord& scenario) {
     order.time = summary_of(order.runs);
     order.speedup = {};
   }
-  const auto found =
-      std::find_if(scenario.orders.begin(), scenario.orders.end(),
-                   [&](const ScenarioOrderRecord& order) { return order.ordering == results.reference; });
-  if (found == scenario.orders.end()) return;
+  const ScenarioOrderRecord* const found = find_order(scenario, results.reference);
+  if (found == nullptr) return;
   for (ScenarioOrderRecord& order : scenario.orders) {
     const auto runs = static_cast<std::ptrdiff_t>(std::min(order.runs.size(), found->runs.size()));
     if (order.ordering == results.reference || runs == 0) continue;

@@ -10,7 +10,6 @@
 #include "lab/scenario/embedded_vertices.hpp"
 #include "lab/scenario/motion_file.hpp"
 #include "lab/scenario/simulation.hpp"
-#include "lab/scenario/surface_file.hpp"
 #include "lab/scenario/vertex_choice.hpp"
 #include "payoff/machine.hpp"
 #include <meshorder/error.hpp>

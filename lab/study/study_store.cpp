@@ -86,14 +86,11 @@ void StudyStore::resume(const StudyPlan& plan, const MachineRecord& machine) {
 }
 
 bool StudyStore::has_mesh(std::string_view name) const {
-  return std::any_of(results_.meshes.begin(), results_.meshes.end(),
-                     [&](const MeshRecord& mesh) { return mesh.name == name; });
+  return find_named(results_.meshes, name) != nullptr;
 }
 
 const ScenarioRecord* StudyStore::find(std::string_view scenario) const {
-  const auto found = std::find_if(results_.scenarios.begin(), results_.scenarios.end(),
-                                  [&](const ScenarioRecord& record) { return record.name == scenario; });
-  return found == results_.scenarios.end() ? nullptr : &*found;
+  return find_named(results_.scenarios, scenario);
 }
 
 int StudyStore::runs_done(std::string_view scenario) const {
@@ -151,10 +148,8 @@ void StudyStore::begin(ScenarioRecord record) {
 }
 
 void StudyStore::keep(std::string_view scenario, const std::vector<RunRecord>& runs) {
-  for (ScenarioRecord& record : results_.scenarios) {
-    if (record.name != scenario) continue;
-    for (std::size_t i = 0; i < runs.size(); ++i) record.orders[i].runs.push_back(runs[i]);
-  }
+  ScenarioRecord& record = *find_named(results_.scenarios, scenario);
+  for (std::size_t i = 0; i < runs.size(); ++i) record.orders[i].runs.push_back(runs[i]);
   summarise(results_);
   write_results(results_, folder_.file(folder_.results()));
 }

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/comparison/comparison.hpp"
 
-#include "lab/report/comparison/comparison_page.hpp"
 #include "support/files.hpp"
 #include "support/sample_results.hpp"
 #include <meshorder/error.hpp>

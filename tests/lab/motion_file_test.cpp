@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/motion_file.hpp"
 
-#include "lab/scenario/surface_file.hpp"
 #include "support/files.hpp"
 #include <meshorder/error.hpp>
 

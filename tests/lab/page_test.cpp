@@ -1,8 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/page/page.hpp"
 
-#include "lab/report/page/headlines.hpp"
-#include "lab/report/page/viewer_sources.hpp"
 #include "support/files.hpp"
 #include "unpacked.hpp"
 #include <meshorder/error.hpp>

@@ -1,6 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/report/page/prose.hpp"
-
 #include "lab/report/tables/tables.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/report/page/view.hpp"
-
 #include "base/index.hpp"
 #include "lab/contact/search/body_surface.hpp"
+#include "lab/report/page/page_parts.hpp"
 #include "mesh/procedural.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>

@@ -1,8 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/comparison/comparison.hpp"
 
+#include "io/stream/output_file.hpp"
 #include "lab/report/findings/lookup.hpp"
 #include "lab/report/findings/numbers_in_words.hpp"
+#include "lab/report/page/page.hpp"
+#include "lab/report/tables/tables.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -10,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace meshorder {
 namespace {
@@ -44,9 +48,7 @@ class Comparison {
   static std::string names_without(const std::vector<Record>& list, const std::vector<Record>& other) {
     std::vector<std::string> names;
     for (const Record& record : list) {
-      const bool found =
-          std::any_of(other.begin(), other.end(), [&](const Record& one) { return one.name == record.name; });
-      if (!found) names.push_back(record.name);
+      if (find_named(other, record.name) == nullptr) names.push_back(record.name);
     }
     return in_words(names);
   }
@@ -77,6 +79,10 @@ void check_scenario(const Comparison& compare, const ScenarioRecord& a, const Sc
           : fmt::format("another {} (other parameters: forces, material, precision, tolerances …)", a.name));
 }
 
+std::string machine_of(const StudyResults& results) {
+  return results.machine.processor.empty() ? "an unknown machine" : results.machine.processor;
+}
+
 }  // namespace
 
 void check_comparable(const ComparedStudy& a, const ComparedStudy& b) {
@@ -89,15 +95,12 @@ void check_comparable(const ComparedStudy& a, const ComparedStudy& b) {
   compare.expect_same("meshes of size", a.results.size, b.results.size);
   compare.expect_same_names("mesh", a.results.meshes, b.results.meshes);
   for (const MeshRecord& mesh : a.results.meshes) {
-    const MeshRecord& other = *find_mesh(b.results, mesh.name);
+    const MeshRecord& other = *find_named(b.results.meshes, mesh.name);
     compare.expect_same("a mesh " + mesh.name + " of", counts_of(mesh), counts_of(other));
   }
   compare.expect_same_names("scenario", a.results.scenarios, b.results.scenarios);
-  for (const ScenarioRecord& scenario : a.results.scenarios) {
-    const auto other = std::find_if(b.results.scenarios.begin(), b.results.scenarios.end(),
-                                    [&](const ScenarioRecord& one) { return one.name == scenario.name; });
-    check_scenario(compare, scenario, *other);
-  }
+  for (const ScenarioRecord& scenario : a.results.scenarios)
+    check_scenario(compare, scenario, *find_named(b.results.scenarios, scenario.name));
   compare.expect_same("the reference", a.results.reference, b.results.reference);
 }
 
@@ -114,9 +117,8 @@ std::optional<SavingDifference> difference_of(const Speedup& a, const Speedup& b
 std::vector<ComparedOrder> compared_orders(const StudyResults& a, const StudyResults& b) {
   std::vector<ComparedOrder> orders;
   for_each_order(a, true, [&](const ScenarioRecord& scenario, const ScenarioOrderRecord& order) {
-    const auto other = std::find_if(b.scenarios.begin(), b.scenarios.end(),
-                                    [&](const ScenarioRecord& one) { return one.name == scenario.name; });
-    if (other == b.scenarios.end() || find_order(*other, b.reference) == nullptr) return;
+    const ScenarioRecord* const other = find_named(b.scenarios, scenario.name);
+    if (other == nullptr || find_order(*other, b.reference) == nullptr) return;
     const ScenarioOrderRecord* const there = find_order(*other, order.ordering);
     if (there == nullptr) return;
     orders.push_back({scenario.name, order.ordering, order.speedup, there->speedup,
@@ -149,11 +151,10 @@ std::vector<std::string> comparison_findings(const ComparedStudy& a, const Compa
                     in_words(turned)));
   std::vector<std::string> shorter;
   for (const ScenarioRecord& scenario : a.results.scenarios) {
-    for (const ScenarioRecord& other : b.results.scenarios) {
-      if (other.name == scenario.name && other.steps != scenario.steps)
-        shorter.push_back(
-            fmt::format("{} ({} steps in A, {} in B)", scenario.name, scenario.steps, other.steps));
-    }
+    const ScenarioRecord* const other = find_named(b.results.scenarios, scenario.name);
+    if (other != nullptr && other->steps != scenario.steps)
+      shorter.push_back(
+          fmt::format("{} ({} steps in A, {} in B)", scenario.name, scenario.steps, other->steps));
   }
   if (!shorter.empty()) {
     findings.push_back(
@@ -171,6 +172,33 @@ std::vector<std::string> comparison_findings(const ComparedStudy& a, const Compa
         "are the same, hold it.");
   }
   return findings;
+}
+
+WrittenComparison write_comparison(const ComparedStudy& a, const ComparedStudy& b, const FilePath& page) {
+  check_comparable(a, b);
+  Page content;
+  content.title =
+      fmt::format("What orders save: {} (A) and {} (B)", machine_of(a.results), machine_of(b.results));
+  content.tables = comparison_tables(a, b);
+  content.findings = comparison_findings(a, b);
+  std::string markdown = "# " + markdown_escaped(content.title) + "\n\n";
+  markdown += to_markdown({content.tables.front()});
+  for (const std::string& finding : content.findings) markdown += "\n" + prose_as_markdown(finding) + "\n";
+  markdown += "\n" + to_markdown({content.tables.begin() + 1, content.tables.end()});
+
+  WrittenComparison written;
+  std::vector<OutputFile> files;
+  const auto add = [&](const FilePath& path, const std::string& text) {
+    files.emplace_back(path).write(text);
+    written.files.push_back(path.path());
+  };
+  add(page.companion(".md"), markdown);
+  add(page.companion(".csv"), to_csv(content.tables));
+  add(page, fill_page(viewer_sources().comparison, content));
+  OutputFile::commit_all(files);
+  written.tables = std::move(content.tables);
+  written.findings = std::move(content.findings);
+  return written;
 }
 
 }  // namespace meshorder

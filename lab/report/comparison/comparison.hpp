@@ -1,9 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/file_path.hpp"
 #include "lab/report/tables/tables.hpp"
 #include "lab/study/results.hpp"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -57,5 +59,16 @@ std::vector<Table> comparison_tables(const ComparedStudy& a, const ComparedStudy
 
 /// Returns findings that the tables do not show, as sentences.
 std::vector<std::string> comparison_findings(const ComparedStudy& a, const ComparedStudy& b);
+
+/// The files that write_comparison wrote, with the tables and findings in them.
+struct WrittenComparison {
+  std::vector<Table> tables;
+  std::vector<std::string> findings;
+  std::vector<std::filesystem::path> files;  ///< the page is the last one
+};
+
+/// Writes a page for the browser, and beside it the tables as Markdown and as CSV, with the page's name and
+/// the extensions .md and .csv. Throws Error if the studies cannot be compared or a file cannot be written.
+WrittenComparison write_comparison(const ComparedStudy& a, const ComparedStudy& b, const FilePath& page);
 
 }  // namespace meshorder

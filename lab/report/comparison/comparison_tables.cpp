@@ -50,10 +50,7 @@ Table savings_table(const StudyResults& a, const StudyResults& b) {
     table.rows.push_back({text_cell(fmt::format("{}, {}", order.scenario, title_of(a, order.ordering))),
                           saving_cell(order.a), saving_cell(order.b), difference_cell(order),
                           words_cell(order.difference)});
-    if (!paper) continue;
-    const auto saving = paper_saving(order.scenario, order.ordering);
-    table.rows.back().push_back(
-        saving ? TableCell{fmt::format("+{}", saving->percent), saving->percent, false} : unknown_cell());
+    if (paper) table.rows.back().push_back(paper_cell(order.scenario, order.ordering));
   }
   return table;
 }
@@ -68,17 +65,16 @@ Table reference_table(const StudyResults& a, const StudyResults& b) {
       {"Scenario", "A, steps", "A, s", "B, steps", "B, s", "A over B"},
       {}};
   for (const ScenarioRecord& scenario : a.scenarios) {
-    for (const ScenarioRecord& other : b.scenarios) {
-      const auto* const of_a = find_order(scenario, a.reference);
-      const auto* const of_b = find_order(other, b.reference);
-      if (other.name != scenario.name || of_a == nullptr || of_b == nullptr) continue;
-      const double step_a = of_a->time.mean / scenario.steps;
-      const double step_b = of_b->time.mean / other.steps;
-      const bool same = scenario.steps == other.steps && step_b > 0;
-      table.rows.push_back({text_cell(scenario.name), count_cell(scenario.steps), number_cell(step_a, 3),
-                            count_cell(other.steps), number_cell(step_b, 3),
-                            same ? number_cell(step_a / step_b, 3) : unknown_cell()});
-    }
+    const ScenarioRecord* const other = find_named(b.scenarios, scenario.name);
+    const auto* const of_a = find_order(scenario, a.reference);
+    const auto* const of_b = other == nullptr ? nullptr : find_order(*other, b.reference);
+    if (of_a == nullptr || of_b == nullptr) continue;
+    const double step_a = of_a->time.mean / scenario.steps;
+    const double step_b = of_b->time.mean / other->steps;
+    const bool same = scenario.steps == other->steps && step_b > 0;
+    table.rows.push_back({text_cell(scenario.name), count_cell(scenario.steps), number_cell(step_a, 3),
+                          count_cell(other->steps), number_cell(step_b, 3),
+                          same ? number_cell(step_a / step_b, 3) : unknown_cell()});
   }
   return table;
 }
@@ -103,7 +99,7 @@ Table both_kernels_table(const StudyResults& a, const StudyResults& b) {
               {"Mesh, kernel and order", "A", "B"},
               {}};
   for (const MeshRecord& mesh : a.meshes) {
-    const MeshRecord* const other = find_mesh(b, mesh.name);
+    const MeshRecord* const other = find_named(b.meshes, mesh.name);
     if (other == nullptr) continue;
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
       for (const OrderingSpec& ordering : a.orderings) {

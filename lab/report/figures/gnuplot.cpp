@@ -88,46 +88,53 @@ std::string with_own_ids(const std::string& svg, const std::string& prefix) {
 }
 
 /// Replaces gnuplot's own title and description, and makes the ids unique.
-std::string tidied(const std::string& svg, const Drawing& drawing) {
+std::string tidied(const std::string& svg, const Figure& figure) {
   const std::size_t begin = svg.find("<svg");
   const std::size_t title = svg.find("<title>", begin);
   const std::size_t end = svg.find("</desc>", title);
   if (end == std::string::npos || svg.find("</svg>", end) == std::string::npos) {
-    throw InputError("figure " + drawing.name, "gnuplot drew no SVG picture", "is its package gnuplot-nox?");
+    throw InputError("figure " + figure.name, "gnuplot drew no SVG picture", "is its package gnuplot-nox?");
   }
   const std::string head = in_one_line(std::string_view(svg).substr(begin, title - begin));
   const std::string body = svg.substr(end + std::string_view("</desc>").size());
-  return fmt::format("{}\n<title>{}</title>\n<desc>{}</desc>{}", head, xml_escaped(printable(drawing.title)),
-                     xml_escaped(printable(drawing.description)), with_own_ids(body, drawing.name + "-"));
+  return fmt::format("{}\n<title>{}</title>\n<desc>{}</desc>{}", head, xml_escaped(printable(figure.title)),
+                     xml_escaped(printable(figure.caption)), with_own_ids(body, figure.name + "-"));
 }
 
 }  // namespace
 
 bool can_draw_figures() { return !find_program(kProgram).empty(); }
 
-std::string draw(const Drawing& drawing) {
+Figure drawn(Figure figure, int height, const std::string& script) {
   const fs::path program = find_program(kProgram);
   if (program.empty()) {
-    throw InputError("figure " + drawing.name, "gnuplot is not installed", "apt-get install gnuplot-nox");
+    throw InputError("figure " + figure.name, "gnuplot is not installed", "apt-get install gnuplot-nox");
   }
   const PrivateFolder folder;
-  const fs::path script = folder.path() / "script";
-  std::ofstream(script, std::ios::binary) << fmt::format(
+  const fs::path commands = folder.path() / "script";
+  std::ofstream(commands, std::ios::binary) << fmt::format(
       "set encoding utf8\n"
-      "set terminal svg size {},{} fixed font 'sans-serif,13' noenhanced background '#ffffff'\n"
-      "set output 'figure.svg'\n{}\nunset output\n",
-      drawing.width, drawing.height, drawing.script);
+      "set terminal svg size 520,{} fixed font 'sans-serif,13' noenhanced background '#ffffff'\n"
+      "set output 'figure.svg'\n"
+      "set border 3 linecolor '#555555' linewidth 1\n"
+      "set tics nomirror textcolor '#222222'\n"
+      "set xlabel textcolor '#222222'\n"
+      "set ylabel textcolor '#222222'\n"
+      "set grid linecolor '#dddddd' linewidth 1 dashtype solid\n"
+      "set key outside top center horizontal textcolor '#222222' samplen 2.5\n{}\nunset output\n",
+      height, script);
   // without the user's own gnuplot settings
   const ExitStatus ended =
-      run_process(program, {"--default-settings", script.string()}, folder.path(), folder.path() / "log");
+      run_process(program, {"--default-settings", commands.string()}, folder.path(), folder.path() / "log");
   if (ended.code != 0) {
     throw InputError(
-        "figure " + drawing.name,
+        "figure " + figure.name,
         fmt::format("gnuplot failed: {}",
                     ended.last_line.empty() ? fmt::format("status {}", ended.code) : ended.last_line),
         "is it version 5.4 or newer, and is there space in the folder for temporary files?");
   }
-  return tidied(FilePath(folder.path() / "figure.svg").read(), drawing);
+  figure.svg = tidied(FilePath(folder.path() / "figure.svg").read(), figure);
+  return figure;
 }
 
 std::string gnuplot_quoted(std::string_view text) {

@@ -2,7 +2,6 @@
 #include "lab/report/findings/findings.hpp"
 
 #include "lab/report/findings/lookup.hpp"
-#include "lab/report/findings/mesh_findings.hpp"
 #include "lab/report/findings/numbers_in_words.hpp"
 #include "lab/report/findings/paper.hpp"
 #include "lab/study/statistics.hpp"

@@ -3,6 +3,7 @@
 
 #include "lab/study/results.hpp"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -12,5 +13,29 @@ namespace meshorder {
 /// the study, when orders pay off, whether all orders did the same work, and what spans, simulated caches and
 /// predictions show. Made from the numbers alone.
 std::vector<std::string> findings_of(const StudyResults& results);
+
+/// Returns findings on the meshes, as sentences: verdicts, edge spans, simulated misses of the last level on
+/// each processor and, in a study without scenarios, the measured kernels that gain and lose most.
+std::vector<std::string> mesh_findings(const StudyResults& results);
+
+/// How far the predicted speedups of a kernel over the study's reference are from the measured ones, over all
+/// meshes and orders that have both. An error is |predicted / measured − 1|.
+struct PredictionError {
+  int speedups = 0;           ///< number of errors; 0: the other numbers mean nothing
+  double median = 0;          ///< the middle error, or the mean of the two middle errors
+  double of_nine_tenths = 0;  ///< the smallest number that nine tenths of the errors do not exceed
+  double largest = 0;
+  int pairs = 0;             ///< of orders of a mesh whose measured times differ by more than 10 %
+  int pairs_told_right = 0;  ///< pairs whose faster order was predicted
+};
+
+/// Returns the error of the predictions of `kKernels[kernel]`. O(orders² · meshes).
+PredictionError prediction_error(const StudyResults& results, std::size_t kernel);
+
+/// Returns predicted / measured − 1 of an order's speedup; negative: the order is better than predicted. Both
+/// records must have both times, see has_both.
+double signed_error(const KernelRecord& order, const KernelRecord& reference);
+
+inline bool has_both(const KernelRecord& kernel) { return kernel.predicted_ms > 0 && kernel.measured_ms > 0; }
 
 }  // namespace meshorder

@@ -9,26 +9,6 @@
 
 namespace meshorder {
 
-/// Returns a mesh or scenario record's entry for an order; nullptr if it was not computed or no run is
-/// finished.
-template <class Record>
-auto find_order(const Record& record, std::string_view ordering) -> decltype(record.orders.data()) {
-  const auto found = std::find_if(record.orders.begin(), record.orders.end(),
-                                  [ordering](const auto& order) { return order.ordering == ordering; });
-  if (found == record.orders.end()) return nullptr;
-  if constexpr (requires { found->runs; }) {
-    if (found->runs.empty()) return nullptr;
-  }
-  return &*found;
-}
-
-/// Returns a mesh of the study; nullptr if no mesh has that name.
-inline const MeshRecord* find_mesh(const StudyResults& results, std::string_view name) {
-  const auto found = std::find_if(results.meshes.begin(), results.meshes.end(),
-                                  [name](const MeshRecord& mesh) { return mesh.name == name; });
-  return found == results.meshes.end() ? nullptr : &*found;
-}
-
 /// Calls `row(scenario, order)` for all orders with finished runs. With `against_reference`, skips the
 /// reference and scenarios in which it has not run.
 template <class Row>

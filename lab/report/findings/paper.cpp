@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/findings/paper.hpp"
 
-#include <algorithm>
+#include "lab/study/results.hpp"
 
 namespace meshorder {
 namespace {
@@ -36,11 +36,7 @@ constexpr std::array kScenarios{
 
 std::span<const PaperScenario> paper_scenarios() { return kScenarios; }
 
-const PaperScenario* find_paper_scenario(std::string_view name) {
-  const auto found = std::find_if(kScenarios.begin(), kScenarios.end(),
-                                  [name](const PaperScenario& scenario) { return scenario.name == name; });
-  return found == kScenarios.end() ? nullptr : &*found;
-}
+const PaperScenario* find_paper_scenario(std::string_view name) { return find_named(kScenarios, name); }
 
 std::optional<PaperSaving> paper_saving(std::string_view scenario, std::string_view ordering) {
   const PaperScenario* const found = find_paper_scenario(scenario);

@@ -4,11 +4,12 @@
 #include "base/text.hpp"
 #include "io/stream/base64.hpp"
 #include "io/stream/output_file.hpp"
-#include "lab/report/page/headlines.hpp"
+#include "lab/report/findings/lookup.hpp"
+#include "lab/report/findings/numbers_in_words.hpp"
 #include "lab/report/page/packed_arrays.hpp"
-#include "lab/report/page/prose.hpp"
-#include "lab/report/page/viewer_sources.hpp"
+#include "lab/report/tables/tables.hpp"
 #include "lab/study/results_json.hpp"
+#include "payoff/kernel_bench.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -18,6 +19,28 @@
 
 namespace meshorder {
 namespace {
+
+std::string bar(std::string_view kind, double ms, double most, const std::string& title) {
+  return fmt::format("<div class=\"{}\"><span style=\"width:{:.1f}%\"></span><b>{} ms</b> {}</div>", kind,
+                     100 * ms / most, with_digits(ms, 3), xml_escaped(title));
+}
+
+/// Returns the bars of the kernels that were timed in both orders.
+std::string bars(const StudyResults& results, const MeshOrderRecord& as_it_is,
+                 const MeshOrderRecord& ordered) {
+  const bool is_matrix = as_it_is.kernels[1].measured_ms <= 0;
+  std::string html;
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    const double before = as_it_is.kernels[k].measured_ms;
+    const double after = ordered.kernels[k].measured_ms;
+    if (before <= 0 || after <= 0) continue;
+    const double most = std::max(before, after);
+    html += fmt::format("<dt>{}</dt><dd>{}{}</dd>\n", is_matrix ? "product" : kKernelTitles[k],
+                        bar("before", before, most, title_of(results, as_it_is.ordering)),
+                        bar("after", after, most, title_of(results, ordered.ordering)));
+  }
+  return html;
+}
 
 using Json = nlohmann::ordered_json;
 
@@ -29,10 +52,9 @@ std::string json_element(std::string_view id, const Json& json) {
 }
 
 Json describe(const PageMesh& mesh, const StudyResults& results, PackedArrays& arrays) {
-  const auto record = std::find_if(results.meshes.begin(), results.meshes.end(),
-                                   [&](const MeshRecord& one) { return one.name == mesh.name; });
+  const MeshRecord* const record = find_named(results.meshes, mesh.name);
   Json json{{"name", mesh.name}};
-  if (record != results.meshes.end()) json["vertices"] = record->vertices;
+  if (record != nullptr) json["vertices"] = record->vertices;
   const bool has_surface = !mesh.surface.triangles.empty();  // a matrix has none
   json["positions"] = has_surface ? arrays.add_places(mesh.points) : Json();
   json["triangles"] = has_surface ? arrays.add(mesh.surface.triangles) : Json();
@@ -46,10 +68,9 @@ Json describe(const PageMesh& mesh, const StudyResults& results, PackedArrays& a
 }
 
 Json describe(const PageMotion& motion, const StudyResults& results, PackedArrays& arrays) {
-  const auto record = std::find_if(results.scenarios.begin(), results.scenarios.end(),
-                                   [&](const ScenarioRecord& one) { return one.name == motion.scenario; });
+  const ScenarioRecord* const record = find_named(results.scenarios, motion.scenario);
   Json json{{"scenario", motion.scenario}, {"title", motion.scenario}};
-  if (record != results.scenarios.end()) {
+  if (record != nullptr) {
     if (!record->title.empty()) json["title"] = record->title;
     json["mesh"] = record->mesh;
   }
@@ -138,6 +159,32 @@ std::string fill_template(std::string_view text,
 }
 
 }  // namespace
+
+std::string headlines_of(const StudyResults& results) {
+  if (!results.scenarios.empty()) return "";
+  std::string html;
+  for (const MeshRecord& mesh : results.meshes) {
+    const MeshOrderRecord* const as_it_is = find_order(mesh, "original");
+    const MeshOrderRecord* const ordered = find_order(mesh, "meshorder");
+    const std::string of_kernels =
+        as_it_is != nullptr && ordered != nullptr ? bars(results, *as_it_is, *ordered) : "";
+    if (of_kernels.empty() && mesh.verdict.empty()) continue;
+    html += "<div class=\"headline\"><div>";
+    if (results.meshes.size() > 1) html += fmt::format("<h3>{}</h3>", xml_escaped(mesh.name));
+    if (mesh.gain > 1)
+      html += fmt::format("<p class=\"gain\">{}× <span>faster at best</span></p>", with_digits(mesh.gain, 2));
+    if (!mesh.verdict.empty())
+      html += fmt::format("<p class=\"answer\">{}.</p>", prose_as_html(mesh.verdict));
+    html += "</div>\n";
+    if (!of_kernels.empty()) {
+      html += fmt::format(
+          "<div><dl>{}</dl>\n<p class=\"hint\">Best time of one run of each kernel, measured here.</p></div>",
+          of_kernels);
+    }
+    html += "</div>\n";
+  }
+  return html;
+}
 
 std::string fill_page(std::string_view frame, const Page& page) {
   return fill_template(frame, [&](std::string_view placeholder) -> std::string {

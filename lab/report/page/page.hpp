@@ -3,15 +3,24 @@
 
 #include "io/stream/file_path.hpp"
 #include "lab/report/figures/figures.hpp"
-#include "lab/report/page/view.hpp"
 #include "lab/report/tables/tables.hpp"
+#include "lab/study/results.hpp"
+#include <meshorder/mesh.hpp>
 #include <meshorder/quality.hpp>
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace meshorder {
+
+/// The simplified outer surface of a body.
+struct SurfaceView {
+  std::vector<Index> vertices;  ///< vertices of the mesh, in the sequence of their first use
+  std::vector<std::array<Index, 3>>
+      triangles;  ///< indices into `vertices`, anticlockwise as seen from outside
+};
 
 /// A mesh as the page shows it in 3-D.
 struct PageMesh {
@@ -58,5 +67,21 @@ std::string fill_page(std::string_view frame, const Page& page);
 
 /// Writes the page, completely or not at all. Throws Error if the file cannot be written.
 void write_page(const Page& page, const FilePath& path);
+
+/// Returns as HTML how much faster each mesh is in the order that `meshorder order` makes: a number if it is
+/// certain; the verdict; and for each kernel two bars, its times in the mesh's own order and in that order.
+/// Empty for a study with scenarios. Leaves out meshes that have neither a verdict nor times.
+std::string headlines_of(const StudyResults& results);
+
+/// The files of viewer/, and three.js with its licence, built into the program.
+struct ViewerSources {
+  std::string_view page;        ///< page.html, with its placeholders
+  std::string_view comparison;  ///< comparison.html, with its placeholders
+  std::string_view style;       ///< style.css
+  std::string_view scripts;     ///< all *.js, in the order of their names
+  std::string_view three;
+};
+
+const ViewerSources& viewer_sources();
 
 }  // namespace meshorder

@@ -3,6 +3,7 @@
 
 #include "lab/report/page/page.hpp"
 #include "lab/scenario/motion_file.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <array>
 #include <string>
@@ -10,6 +11,12 @@
 #include <vector>
 
 namespace meshorder {
+
+/// Returns the mesh's `boundary_triangles`, simplified to about `most_triangles` if there are more (Garland
+/// and Heckbert 1997, Surface simplification using quadric error metrics; by meshoptimizer). All vertices are
+/// vertices of the mesh. Keeps the topology unless that would leave more than twice as many triangles. The
+/// result is the same on every run. Throws Error for a mesh without volume cells and surface. O(n log n).
+SurfaceView surface_view(const Mesh& mesh, Index most_triangles);
 
 /// How much of meshes and motions a page shows.
 struct PageDetail {

@@ -4,8 +4,8 @@
 #include "io/npy.hpp"
 #include "io/stream/output_file.hpp"
 #include "lab/report/findings/findings.hpp"
-#include "lab/report/page/prose.hpp"
-#include "lab/scenario/surface_file.hpp"
+#include "lab/report/tables/tables.hpp"
+#include "lab/scenario/motion_file.hpp"
 #include "lab/study/results_json.hpp"
 #include <meshorder/error.hpp>
 

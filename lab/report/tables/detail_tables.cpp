@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/report/findings/findings.hpp"
 #include "lab/report/findings/lookup.hpp"
 #include "lab/report/findings/numbers_in_words.hpp"
-#include "lab/report/findings/prediction_error.hpp"
 #include "lab/report/tables/each_table.hpp"
 
 #include <fmt/format.h>

@@ -15,6 +15,9 @@ Table summary_table(const StudyResults& results);
 /// Returns "+11.9 (+10.2 … +13.5), saves" as a cell.
 TableCell saving_cell(const Speedup& speedup);
 
+/// Returns what the paper's order saves in a scenario, "+27.8"; a dash if the paper does not give it.
+TableCell paper_cell(std::string_view scenario, std::string_view ordering);
+
 // The paper's tables with its numbers next to ours, a row for each mesh or scenario and order. A table
 // without data has no rows. The paper's column is omitted in a study without its scenarios or with another
 // reference.

@@ -151,12 +151,7 @@ Table speedup_table(const StudyResults& results) {
                                text_cell(words),
                                percent_cell(s.undisturbed_percent)};
     for (std::size_t i = 1; i <= 4; ++i) row[i].weak = !s.beyond_noise;
-    if (paper) {
-      const auto saving = paper_saving(scenario.name, order.ordering);
-      row.insert(row.begin() + 2, saving
-                                      ? TableCell{fmt::format("+{}", saving->percent), saving->percent, false}
-                                      : unknown_cell());
-    }
+    if (paper) row.insert(row.begin() + 2, paper_cell(scenario.name, order.ordering));
     table.rows.push_back(std::move(row));
   });
   return table;
@@ -172,7 +167,7 @@ Table break_even_table(const StudyResults& results) {
       {kHead, "Cost, s", "Pays off at step", "Of steps"},
       {}};
   for_each_order(results, true, [&](const ScenarioRecord& scenario, const ScenarioOrderRecord& order) {
-    const MeshRecord* const mesh = find_mesh(results, scenario.mesh);
+    const MeshRecord* const mesh = find_named(results.meshes, scenario.mesh);
     const MeshOrderRecord* const of_mesh = mesh == nullptr ? nullptr : find_order(*mesh, order.ordering);
     const auto& step = order.speedup.break_even_step;
     TableCell paid{"never", std::nullopt, true};

@@ -3,10 +3,12 @@
 #include "lab/report/findings/numbers_in_words.hpp"
 #include "lab/report/findings/paper.hpp"
 #include "lab/report/tables/each_table.hpp"
+#include "lab/report/tables/tables.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace meshorder {
@@ -30,13 +32,13 @@ bool has_paper_of(const StudyResults& results, const std::string& ordering) {
          });
 }
 
-TableCell paper_cell(const ScenarioRecord& scenario, const std::string& ordering) {
-  const auto saving = paper_saving(scenario.name, ordering);
+}  // namespace
+
+TableCell paper_cell(std::string_view scenario, std::string_view ordering) {
+  const auto saving = paper_saving(scenario, ordering);
   if (!saving) return unknown_cell();
   return {fmt::format("+{}", saving->percent), saving->percent, false};
 }
-
-}  // namespace
 
 TableCell saving_cell(const Speedup& speedup) {
   TableCell cell = percent_cell(speedup.percent);
@@ -75,11 +77,24 @@ Table summary_table(const StudyResults& results) {
     for (const OrderingSpec* const ordering : orderings) {
       const ScenarioOrderRecord* const order = find_order(scenario, ordering->name);
       row.push_back(order == nullptr ? unknown_cell() : saving_cell(order->speedup));
-      if (has_paper_of(results, ordering->name)) row.push_back(paper_cell(scenario, ordering->name));
+      if (has_paper_of(results, ordering->name)) row.push_back(paper_cell(scenario.name, ordering->name));
     }
     table.rows.push_back(std::move(row));
   }
   return table;
+}
+
+std::vector<Table> tables_of(const StudyResults& results) {
+  std::vector<Table> tables{summary_table(results), edge_span_table(results), seconds_table(results),
+                            saved_table(results),   speedup_table(results),   break_even_table(results),
+                            phases_table(results),  motions_table(results)};
+  std::ranges::move(misses_tables(results), std::back_inserter(tables));
+  tables.push_back(prediction_table(results));
+  tables.push_back(kernels_table(results));
+  tables.push_back(machine_table(results));
+  tables.push_back(protocol_table(results));
+  std::erase_if(tables, [](const Table& table) { return table.rows.empty(); });
+  return tables;
 }
 
 }  // namespace meshorder

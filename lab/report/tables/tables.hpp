@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshorder {
@@ -65,5 +66,14 @@ std::string to_html(const Table& table);
 
 /// Returns the title, the columns aligned by blanks, and the caption, as lines for a terminal.
 std::string to_text(const Table& table);
+
+// Sentences of a report. Text in `backticks` is code; all other text is plain, so that no name in it acts as
+// markup.
+
+/// Returns text as HTML, with a no-break space before per cent signs.
+std::string prose_as_html(std::string text);
+
+/// Returns text as one paragraph of Markdown.
+std::string prose_as_markdown(std::string_view text);
 
 }  // namespace meshorder

@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/report/figures/figure_style.hpp"
 #include "lab/report/figures/figures.hpp"
 #include "lab/report/figures/gnuplot.hpp"
 #include "lab/report/findings/lookup.hpp"
@@ -9,10 +8,57 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace meshorder {
 namespace {
+
+/// Returns the points of the log–log histogram, "span edges". First come single bins; further out, where bins
+/// crowd on the logarithmic axis, the mean of the bins of each tenth of a decade. Bins without edges are left
+/// out, as they have no logarithm.
+std::vector<std::string> histogram_points(const std::vector<Offset>& histogram, Index width) {
+  std::vector<std::string> points;
+  for (std::size_t begin = 0; begin < histogram.size();) {
+    const std::size_t end = std::min(
+        histogram.size(), std::max(begin + 1, static_cast<std::size_t>(static_cast<double>(begin) * 1.26)));
+    const auto bins = static_cast<double>(end - begin);
+    const Offset edges = std::accumulate(histogram.begin() + static_cast<std::ptrdiff_t>(begin),
+                                         histogram.begin() + static_cast<std::ptrdiff_t>(end), Offset{0});
+    if (edges > 0) {
+      const double middle = (static_cast<double>(begin + end) * width - 1) / 2;
+      points.push_back(fmt::format("{} {}", std::max(middle, 0.5), static_cast<double>(edges) / bins));
+    }
+    begin = end;
+  }
+  return points;
+}
+
+/// Orders with the same spans share a curve.
+struct Curve {
+  std::string title;  ///< "Fiedler, VF Fiedler"
+  OrderStyle style;
+  const std::vector<Offset>* histogram = nullptr;
+};
+std::vector<Curve> curves_of(const StudyResults& results, const MeshRecord& mesh) {
+  std::vector<Curve> curves;
+  for (const OrderingSpec& ordering : results.orderings) {
+    const MeshOrderRecord* const order = find_order(mesh, ordering.name);
+    if (order == nullptr || order->span_histogram.empty()) continue;
+    const auto same = std::find_if(curves.begin(), curves.end(), [order](const Curve& curve) {
+      return *curve.histogram == order->span_histogram;
+    });
+    if (same != curves.end()) {
+      same->title += ", " + title_of(results, ordering.name);
+    } else {
+      curves.push_back(
+          {title_of(results, ordering.name), style_of(results, ordering.name), &order->span_histogram});
+    }
+  }
+  return curves;
+}
 
 constexpr double kBarsOfLevel = 0.8;  ///< share of a level's width that its bars take
 
@@ -145,7 +191,7 @@ Figure cache_figure(const StudyResults& results, const MeshRecord& mesh) {
   const auto kernels = static_cast<std::size_t>(std::count_if(records.begin(), records.end(), is_run));
   const int height = panels + kRow * static_cast<int>(kernels);
   const int column = (kWidth - kLeft) / static_cast<int>(mesh.hierarchies.size());
-  std::string script = plain_axes() + "set multiplot\nset grid noxtics\nunset key\n";
+  std::string script = "set multiplot\nset grid noxtics\nunset key\n";
   for (std::size_t k = 0; k < kernels; ++k) {
     for (std::size_t h = 0; h < mesh.hierarchies.size(); ++h) {
       const int left = kLeft + column * static_cast<int>(h);
@@ -156,11 +202,53 @@ Figure cache_figure(const StudyResults& results, const MeshRecord& mesh) {
   }
   script += "set title ''\nunset label 1\n" + place({0, kWidth, 0, key_height}, kWidth, height) +
             key(results, mesh) + "unset multiplot";
-  figure.svg = draw({figure.name, figure.title, figure.caption, kWidth, height, script});
-  return figure;
+  return drawn(std::move(figure), height, script);
 }
 
+struct KernelStyle {
+  const char* colour;
+  int point;
+};
+constexpr std::array<KernelStyle, kKernels.size()> kStyles{
+    {{"#0072b2", 7}, {"#e69f00", 5}, {"#009e73", 9}, {"#d55e00", 12}}};
+
 }  // namespace
+
+std::vector<Figure> span_figures(const StudyResults& results) {
+  std::vector<Figure> figures;
+  for (const MeshRecord& mesh : results.meshes) {
+    std::string data;
+    std::vector<std::string> plots;
+    for (const Curve& curve : curves_of(results, mesh)) {
+      const auto points = histogram_points(*curve.histogram, mesh.span_bin);
+      if (points.empty()) continue;
+      const std::string block = fmt::format("curve{}", plots.size());
+      data += data_block(block, points);
+      plots.push_back(fmt::format(
+          "${} using 1:2 with linespoints linecolor '{}' linewidth 1.3 dashtype {} pointtype {} "
+          "pointsize 0.55 title {}",
+          block, curve.style.colour, curve.style.dashes, curve.style.filled, gnuplot_key(curve.title)));
+    }
+    if (plots.empty()) continue;
+    Figure figure{
+        figure_name("spans", results, mesh),
+        "spans",
+        "Edge spans of " + mesh.name,
+        fmt::format("How many edges have which span, in bins of {} as in the paper's Figure 10, both "
+                    "axes logarithmic; further out, means of "
+                    "neighbouring bins. The "
+                    "steeper a curve falls, the nearer in memory are neighbours in the mesh.",
+                    mesh.span_bin),
+        {}};
+    figures.push_back(
+        drawn(std::move(figure), 360,
+              data + fmt::format("set logscale xy\nset xlabel 'Edge span, vertices'\n"
+                                 "set ylabel {}\nset format x '%.0f'\nset format y '%g'\nplot {}",
+                                 gnuplot_quoted(fmt::format("Edges in a bin of {}", mesh.span_bin)),
+                                 fmt::join(plots, ", \\\n  "))));
+  }
+  return figures;
+}
 
 std::vector<Figure> cache_figures(const StudyResults& results) {
   std::vector<Figure> figures;
@@ -172,6 +260,57 @@ std::vector<Figure> cache_figures(const StudyResults& results) {
     if (simulated && !mesh.hierarchies.empty()) figures.push_back(cache_figure(results, mesh));
   }
   return figures;
+}
+
+std::vector<Figure> prediction_figures(const StudyResults& results) {
+  std::string data;
+  std::vector<std::string> plots;
+  double least = 1;
+  double most = 1;
+  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    std::vector<std::string> points;
+    for (const MeshRecord& mesh : results.meshes) {
+      const MeshOrderRecord* const reference = find_order(mesh, results.reference);
+      if (reference == nullptr) continue;
+      const KernelRecord& whole = reference->kernels[k];
+      for (const MeshOrderRecord& order : mesh.orders) {
+        const KernelRecord& kernel = order.kernels[k];
+        if (&order == reference || kernel.predicted_ms <= 0 || kernel.measured_ms <= 0 ||
+            whole.predicted_ms <= 0 || whole.measured_ms <= 0) {
+          continue;
+        }
+        const double predicted = whole.predicted_ms / kernel.predicted_ms;
+        const double measured = whole.measured_ms / kernel.measured_ms;
+        least = std::min({least, predicted, measured});
+        most = std::max({most, predicted, measured});
+        points.push_back(fmt::format("{} {}", predicted, measured));
+      }
+    }
+    if (points.empty()) continue;
+    data += data_block(fmt::format("kernel{}", k), points);
+    plots.push_back(
+        fmt::format("$kernel{} using 1:2 with points linecolor '{}' linewidth 1.4 pointtype {} "
+                    "pointsize 0.8 title {}",
+                    k, kStyles[k].colour, kStyles[k].point, gnuplot_quoted(kKernelTitles[k])));
+  }
+  if (plots.empty()) return {};
+  plots.emplace_back("x with lines linecolor '#555555' dashtype (4,4) title 'as predicted'");
+  const std::string reference = title_of(results, results.reference);
+  Figure figure{
+      "prediction",
+      "prediction",
+      "Kernels: predicted and measured",
+      fmt::format("How many times faster than in the order “{}” the kernels run, a mark for each mesh "
+                  "and order, both axes logarithmic. Above the line: faster than predicted; below: "
+                  "slower.",
+                  reference),
+      {}};
+  return {drawn(
+      std::move(figure), 420,
+      data + fmt::format("set logscale xy 2\nset size square\nset xrange [{0}:{1}]\nset yrange [{0}:{1}]\n"
+                         "set xlabel 'Predicted speedup, times'\nset ylabel 'Measured speedup, times'\n"
+                         "set format xy '%g'\nplot {2}",
+                         least / 1.2, most * 1.2, fmt::join(plots, ", \\\n  ")))};
 }
 
 }  // namespace meshorder
