@@ -4,7 +4,6 @@
 // and return what the page shows. The module itself calls only `tell`.
 #include "base/memory.hpp"
 #include "base/text.hpp"
-#include "grouped_notes.hpp"
 #include "io/format.hpp"
 #include "matrix_points.hpp"
 #include "mesh/graphs.hpp"

@@ -4,6 +4,7 @@
 #include "lab.hpp"
 #include "lab/models/catalogue.hpp"
 #include "progress.hpp"
+#include "wording.hpp"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -24,7 +25,7 @@ nlohmann::ordered_json model_json(const Model& model) {
   const bool made = !model.path.empty();
   return {{"name", model.name},
           {"sentence", model.description},
-          {"path", made ? nlohmann::ordered_json(model.path.string()) : nlohmann::ordered_json(nullptr)},
+          {"path", or_null(model.path.string())},
           {"vertices", made ? nlohmann::ordered_json(model.vertices) : nlohmann::ordered_json(nullptr)},
           {"elements", made ? nlohmann::ordered_json(model.elements) : nlohmann::ordered_json(nullptr)}};
 }

@@ -14,6 +14,7 @@
 #include "mesh_files.hpp"
 #include "progress.hpp"
 #include "simulate_report.hpp"
+#include "wording.hpp"
 #include <meshorder/error.hpp>
 
 #include <CLI/CLI.hpp>
@@ -49,10 +50,6 @@ struct SimulateArguments : Common {
   Index checkpoint_every = 10;
   std::string resume;
 };
-
-nlohmann::ordered_json or_null(const std::string& text) {
-  return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
-}
 
 void list_scenarios(const Console& console) {
   auto scenarios = nlohmann::ordered_json::array();

@@ -3,7 +3,6 @@
 // meshorder-models: makes the surfaces from which TetGen fills the study's models.
 // Like meshorder-delaunay, it uses CGAL's GPL parts; README.md has the recipes.
 #include "surface.hpp"
-#include "wrap.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -1,14 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/comm/communicator.hpp"
-#include "freed_memory.hpp"
-#include "help_format.hpp"
 #include "interruption.hpp"
-#include "launcher.hpp"
-#ifdef MESHORDER_HAS_HDF5
-#include "io/hdf5/mutex.hpp"
-#endif
 #include "io/stream/scratch.hpp"
 #include "order.hpp"
+#include "program.hpp"
 #include "standard_streams.hpp"
 #include "usage.hpp"
 #include <meshorder/error.hpp>
@@ -28,11 +23,10 @@
 
 namespace {
 
+using meshorder::command::kBadInput;
+using meshorder::command::kOwnFailure;
 using meshorder::command::report_failure;
 using meshorder::distributed::Communicator;
-
-constexpr int kBadInput = 2;
-constexpr int kOwnFailure = 1;
 
 int status_of(const meshorder::Error& error) {
   return error.code() == meshorder::Code::internal ? kOwnFailure : kBadInput;
@@ -117,12 +111,8 @@ int tell_of_launcher(bool is_first_process) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  meshorder::command::keep_freed_memory();
-  meshorder::command::occupy_closed_streams();
+  meshorder::command::prepare_process();
   meshorder::command::clean_up_quietly_at_signals();
-#ifdef MESHORDER_HAS_HDF5
-  meshorder::hdf5::close_nothing_at_exit();
-#endif
   // read before MPI changes the environment
   const bool is_one_of_several = meshorder::command::is_one_of_several();
   const bool is_first_process = meshorder::command::is_first_process();

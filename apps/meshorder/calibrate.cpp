@@ -6,6 +6,7 @@
 #include "payoff/calibration_store.hpp"
 #include "payoff/machine_choice.hpp"
 #include "progress.hpp"
+#include "wording.hpp"
 #include <meshorder/error.hpp>
 
 #include <CLI/CLI.hpp>
@@ -109,9 +110,7 @@ void list_machines(const Console& console) {
   const std::string date = stored.calibration ? stored.calibration->date : "";
   console.print_list("  {:<8} {}", "this",
                      date.empty() ? "this machine, not calibrated" : "this machine, calibrated " + date);
-  list.push_back({{"name", "this"},
-                  {"machine", processor_of_this_machine()},
-                  {"calibrated", date.empty() ? Json(nullptr) : Json(date)}});
+  list.push_back({{"name", "this"}, {"machine", processor_of_this_machine()}, {"calibrated", or_null(date)}});
   for (const ShippedMachine& machine : shipped_machines()) {
     console.print_list("  {:<8} {}", machine.name, machine.costs().machine);
     list.push_back({{"name", machine.name}, {"machine", machine.costs().machine}, {"calibrated", nullptr}});
@@ -157,7 +156,7 @@ void run(const CalibrateArguments& arguments) {
   print_calibration(console, calibration);
   if (!file.empty()) console.print("kept in    {}", file);
   Json result = Json::parse(to_json_text(calibration));
-  result["file"] = file.empty() ? Json(nullptr) : Json(file);
+  result["file"] = or_null(file);
   console.print_json(result);
 }
 

@@ -41,7 +41,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kStatusOfBadInput = 2;
 constexpr rlim_t kSecondsToRead = 10;                // of processor time
 constexpr std::uintmax_t kBytesASecond = 1'000'000;  // of a file, for each further second
 constexpr std::uintmax_t kMostSeconds = 10'000'000;
@@ -219,7 +218,7 @@ int report_ending(const Work& of_child, int signal) {
     fault = fmt::format("meshorder crashed (signal {}) after {} read it", signal, reader);
   }
   const InputError error(mesh, fault, "it is damaged or malicious: get it again from its source");
-  return report_failure(error.what(), kStatusOfBadInput);
+  return report_failure(error.what(), kBadInput);
 }
 
 /// Serves the child, waits for it, removes the files that it unpacked, and ends with the child's status.

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "console.hpp"
 
-#include "grouped_notes.hpp"
+#include "wording.hpp"
 
 #include <nlohmann/json.hpp>
 

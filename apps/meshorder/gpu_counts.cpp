@@ -279,7 +279,7 @@ nlohmann::ordered_json to_json(const GpuReport& report) {
           {"kept", report.keeps()},
           {"vertices", to_json(report.order.vertices.method)},
           {"elements", to_json(report.order.cells.method)},
-          {"card", report.card != nullptr ? nlohmann::ordered_json(report.card->name) : nullptr},
+          {"card", or_null(report.card != nullptr ? report.card->name : "")},
           {"kernels", kernels}};
 }
 

@@ -25,16 +25,7 @@
 namespace meshorder::command {
 namespace {
 
-std::string old_to_new_path(const std::string& prefix, const std::string& what) {
-  return prefix + "." + what + ".old_to_new.npy";
-}
-std::string new_to_old_path(const std::string& prefix, const std::string& what) {
-  return prefix + "." + what + ".new_to_old.npy";
-}
 std::string identity_path(const std::string& prefix) { return prefix + ".maps.json"; }
-std::string ids_path(const std::string& prefix, const std::string& what) {
-  return prefix + "." + what + ".ids.npy";
-}
 std::string kept_path(const std::string& prefix) { return prefix + ".cells.kept.npy"; }
 
 /// Writes numbers as a file of the set. If `numbers` is empty, the set instead removes the file that an
@@ -51,11 +42,10 @@ void write_or_remove(const std::vector<Number>& numbers, const std::string& path
 
 void write_map(const Permutation& map, const std::vector<std::int64_t>& ids, const std::string& prefix,
                const std::string& what, OutputSet& files, std::vector<std::string>& written) {
-  write_npy(map.old_to_new(),
-            {FilePath::derived(written.emplace_back(old_to_new_path(prefix, what))), files});
-  write_npy(map.new_to_old(),
-            {FilePath::derived(written.emplace_back(new_to_old_path(prefix, what))), files});
-  write_or_remove(ids, ids_path(prefix, what), files, written);
+  const MapPaths paths = map_paths(prefix, what);
+  write_npy(map.old_to_new(), {FilePath::derived(written.emplace_back(paths.old_to_new)), files});
+  write_npy(map.new_to_old(), {FilePath::derived(written.emplace_back(paths.new_to_old)), files});
+  write_or_remove(ids, paths.ids, files, written);
 }
 
 std::vector<std::int64_t> read_ids(const std::string& path, Index count) {
@@ -69,14 +59,14 @@ std::vector<std::int64_t> read_ids(const std::string& path, Index count) {
 }
 
 Maps read_permutations(const std::string& prefix, const Mesh& mesh) {
-  return {read_permutation(FilePath::derived(old_to_new_path(prefix, "vertices")), mesh.vertex_count(),
-                           "vertices"),
-          read_permutation(FilePath::derived(old_to_new_path(prefix, "cells")), mesh.cell_count(), "cells"),
-          read_ids(ids_path(prefix, "vertices"), mesh.vertex_count()),
-          read_ids(ids_path(prefix, "cells"), mesh.cell_count()),
-          {},
-          {},
-          {}};
+  const MapPaths vertices = map_paths(prefix, "vertices");
+  const MapPaths cells = map_paths(prefix, "cells");
+  Maps maps;
+  maps.vertices = read_permutation(FilePath::derived(vertices.old_to_new), mesh.vertex_count(), "vertices");
+  maps.cells = read_permutation(FilePath::derived(cells.old_to_new), mesh.cell_count(), "cells");
+  maps.vertex_ids = read_ids(vertices.ids, mesh.vertex_count());
+  maps.cell_ids = read_ids(cells.ids, mesh.cell_count());
+  return maps;
 }
 
 /// Throws Error if a file of the maps is named instead of their prefix.
@@ -196,8 +186,8 @@ MeshChecksums checksums_of(const Mesh& mesh) {
 }
 
 MapPaths map_paths(const std::string& prefix, const std::string& what) {
-  return {old_to_new_path(prefix, what), new_to_old_path(prefix, what), ids_path(prefix, what),
-          prefix + "." + what + ".parts.npy"};
+  const std::string stem = prefix + "." + what;
+  return {stem + ".old_to_new.npy", stem + ".new_to_old.npy", stem + ".ids.npy", stem + ".parts.npy"};
 }
 
 void check_can_write_maps(const std::string& prefix) {
@@ -230,7 +220,7 @@ std::string write_identity(const MeshChecksums& before, const MeshChecksums& aft
 
 void remove_other_maps(const std::string& prefix, OutputSet& files) {
   for (const char* const what : {"vertices", "cells"})
-    files.remove(FilePath::derived(ids_path(prefix, what)));
+    files.remove(FilePath::derived(map_paths(prefix, what).ids));
   files.remove(FilePath::derived(kept_path(prefix)));
 }
 

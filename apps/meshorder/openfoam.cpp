@@ -351,7 +351,7 @@ nlohmann::ordered_json mesh_json(const Case& meshes, const OrderedMesh& mesh, bo
   result["profile"] = {{"before", mesh.profile_before}, {"after", mesh.profile_after}};
   result["fiedler"] = to_json(mesh.order.fiedler);
   result["seconds"] = mesh.order.seconds;
-  result["map"] = is_written ? nlohmann::ordered_json(meshes.cell_order(mesh.name).string()) : nullptr;
+  result["map"] = or_null(is_written ? meshes.cell_order(mesh.name).string() : "");
   return result;
 }
 
@@ -400,7 +400,7 @@ void run(const OpenFoamArguments& arguments) {
                       {"for", to_string(arguments.ordering.workload)},
                       {"meshes", list},
                       {"files", written},
-                      {"next", to_be_moved ? nlohmann::ordered_json(next) : nullptr},
+                      {"next", or_null(next)},
                       {"seconds", stopwatch.seconds()}});
 }
 

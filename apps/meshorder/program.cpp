@@ -2,8 +2,6 @@
 #include "program.hpp"
 
 #include "command.hpp"
-#include "freed_memory.hpp"
-#include "help_format.hpp"
 #include "interruption.hpp"
 #ifdef MESHORDER_HAS_HDF5
 #include "io/hdf5/mutex.hpp"
@@ -15,8 +13,12 @@
 #include <meshorder/registry.hpp>
 
 #include <CLI/CLI.hpp>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <exception>
 #include <new>
@@ -26,8 +28,32 @@
 namespace meshorder::command {
 namespace {
 
-constexpr int kBadInput = 2;
-constexpr int kOwnFailure = 1;
+// Variables of Open MPI, of MPICH and its derivatives, and of Slurm. Slurm's variables describe the step that
+// a process belongs to.
+constexpr std::array kSizes{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
+constexpr std::array kRanks{"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"};
+
+/// Returns the value of the first of these variables that is set; null if none of them is set.
+template <class Names>
+const char* first_set(const Names& names) {
+  const char* value = nullptr;
+  for (const char* const name : names) {
+    if (value == nullptr) value = std::getenv(name);
+  }
+  return value;
+}
+
+/// Makes the process keep freed memory for later allocations of any thread, if the C library is glibc. By
+/// default, blocks of 32 MiB and more go back to the system, which clears every page again for the next
+/// block. This takes a sixth of the time of `meshorder order` for a mesh of 1.8 million vertices. The peak of
+/// the memory in use grows by up to a fifth.
+void keep_freed_memory() noexcept {
+#if defined(__GLIBC__)
+  (void)mallopt(M_MMAP_MAX, 0);         // no blocks outside the heap
+  (void)mallopt(M_TRIM_THRESHOLD, -1);  // no memory of the heap goes back to the system
+  (void)mallopt(M_ARENA_MAX, 1);        // one heap for all threads: each can use what another freed
+#endif
+}
 
 /// Adds the options that all programs have, then those of the program, to the parser.
 void describe(const Program& program, CLI::App& app, std::vector<std::string>& arguments) {
@@ -104,19 +130,36 @@ extern "C" void tell_if_a_library_ended_it() {
 
 }  // namespace
 
-int run_program(const Program& program, int argc, char** argv) noexcept {
+void prepare_process() {
   keep_freed_memory();
   occupy_closed_streams();
-  clean_up_at_signals();
-  (void)std::atexit(tell_if_a_library_ended_it);
 #ifdef MESHORDER_HAS_HDF5
   hdf5::close_nothing_at_exit();
 #endif
+}
+
+int run_program(const Program& program, int argc, char** argv) noexcept {
+  prepare_process();
+  clean_up_at_signals();
+  (void)std::atexit(tell_if_a_library_ended_it);
   std::optional<int> status;
   if (program.hand_over != nullptr) status = program.hand_over(argv);
   if (!status) status = run_and_report(program, argc, argv);
   has_run = true;
   return *status;
+}
+
+bool is_started_as_rank() { return first_set(kSizes) != nullptr || first_set(kRanks) != nullptr; }
+
+bool is_one_of_several() {
+  const char* const size = first_set(kSizes);
+  // PMIx gives a process only its rank
+  return size != nullptr ? std::atoi(size) > 1 : std::getenv("PMIX_RANK") != nullptr;
+}
+
+bool is_first_process() {
+  const char* const rank = first_set(kRanks);
+  return rank == nullptr || std::atoi(rank) == 0;
 }
 
 }  // namespace meshorder::command

@@ -19,10 +19,23 @@ struct Program {
   std::optional<int> (*hand_over)(char** arguments) noexcept = nullptr;
 };
 
+/// Prepares memory, standard streams and libraries for the work of a process. Call it first.
+void prepare_process();
+
 /// Implements the `main` of `program`: prepares the process, parses the arguments, runs the subcommand and
 /// reports failures.
 ///
 /// @return exit status: 0, 2 for bad input, 1 for a failure of the program
 int run_program(const Program& program, int argc, char** argv) noexcept;
+
+/// Returns whether `mpirun` or `srun` started this process, according to environment variables.
+bool is_started_as_rank();
+
+/// Returns whether `mpirun` or `srun` started this process together with others, according to environment
+/// variables. Variables that only describe a batch script do not count.
+bool is_one_of_several();
+
+/// Returns whether this process is the first of those started together, or the only one.
+bool is_first_process();
 
 }  // namespace meshorder::command

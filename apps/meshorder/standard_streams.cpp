@@ -23,7 +23,6 @@ volatile std::sig_atomic_t descriptor_of_messages = STDERR_FILENO;
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 void refuse_unless_reader_left() {
-  constexpr int kBadInput = 2;
   if (errno != EPIPE)
     throw CommandError("standard output: cannot be written to the end; is the disk full?", kBadInput);
 }

@@ -5,6 +5,10 @@
 
 namespace meshorder::command {
 
+// exit statuses of a failure
+inline constexpr int kOwnFailure = 1;  ///< of the program
+inline constexpr int kBadInput = 2;    ///< of the arguments or files
+
 /// Gives closed standard streams a descriptor that refuses reading or writing, so that no file that is opened
 /// later takes their place. Call it first.
 void occupy_closed_streams();

@@ -2,10 +2,11 @@
 #include "trial.hpp"
 
 #include "base/text.hpp"
+#include "io/stream/file_path.hpp"
 #include "program_output.hpp"
+#include "trial_folder.hpp"
 #include "trial_program.hpp"
-#include "trial_readings.hpp"
-#include "try_finding.hpp"
+#include "try_report.hpp"
 #include "wording.hpp"
 #include <meshorder/error.hpp>
 
@@ -18,6 +19,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace meshorder::command {
 namespace {
@@ -25,6 +27,71 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kLeastTime = 1e-6;
+
+/// Returns a word of the command line with the mesh in place of {}, its name without extension in place of
+/// {stem}, and the path for outputs in place of {out}.
+std::string with_places(const std::string& word, const TrialSubject& subject, const TrialFolder& folder) {
+  return replaced(replaced(replaced(word, "{out}", folder.output().string()), "{stem}", subject.stem()), "{}",
+                  subject.name());
+}
+
+/// Reads the times, counts and results of a program from its printed output and its files.
+class TrialReadings {
+ public:
+  /// Throws InvalidArgument for faulty expressions, and for a file that is not in the program's folder.
+  TrialReadings(const TrialOptions& options, const TrialSubject& subject, const TrialFolder& folder);
+
+  /// Reads the results of a run. Throws InvalidArgument if a requested result is missing. Returns how the
+  /// results differ from those of the first run; empty if they are the same.
+  std::string read(TriedOrder& order, double& time);
+
+ private:
+  const TrialFolder& folder_;
+  double tolerance_;
+  std::string same_file_;
+  std::optional<PrintedNumbers> time_;
+  std::optional<PrintedNumbers> count_;
+  std::optional<PrintedNumbers> same_;
+  std::optional<std::vector<double>> numbers_;  ///< of the first run
+  std::optional<std::string> text_;             ///< of the first run
+};
+
+TrialReadings::TrialReadings(const TrialOptions& options, const TrialSubject& subject,
+                             const TrialFolder& folder)
+    : folder_(folder),
+      tolerance_(options.tolerance),
+      same_file_(with_places(options.same_file, subject, folder)) {
+  if (options.time != "cpu" && options.time != "wall") time_.emplace("--time", options.time);
+  if (!options.count.empty()) count_.emplace("--count", options.count);
+  if (!options.same.empty()) same_.emplace("--same", options.same);
+  const fs::path file = fs::path(options.same_file).lexically_normal();
+  if (file.is_absolute() || file.string().starts_with(".."))
+    throw InvalidArgument("--same-file " + options.same_file +
+                          ": give its path in the folder that the program runs in, or {out}");
+}
+
+std::string TrialReadings::read(TriedOrder& order, double& time) {
+  const std::vector<fs::path> printed = printed_files(folder_.log());
+  if (time_) time = time_->find(printed).back();
+  if (time <= 0) throw InvalidArgument(fmt::format("a time of {} cannot be compared", time));
+  if (count_) order.count = count_->find(printed).back();
+  std::string found;
+  if (same_) {
+    std::vector<double> numbers = same_->find(printed);
+    if (!numbers_) numbers_ = numbers;
+    found = difference(*numbers_, numbers, tolerance_);
+  }
+  if (!same_file_.empty() && found.empty()) {
+    const fs::path file = folder_.run() / same_file_;  // an absolute path stays
+    if (!fs::is_regular_file(file))
+      throw InvalidArgument(fmt::format("--same-file: the program writes no file {}",
+                                        file.lexically_relative(folder_.run()).string()));
+    std::string text = FilePath(file).read();
+    if (!text_) text_ = text;
+    found = difference(*text_, text, tolerance_);
+  }
+  return found;
+}
 
 /// Runs a program on a mesh in several orders.
 class Trial {

@@ -5,6 +5,7 @@
 #include "io/format.hpp"
 #include "io/stream/file_path.hpp"
 #include "ordering/method.hpp"
+#include "standard_streams.hpp"
 #include "trial_program.hpp"
 #include "wording.hpp"
 #include <meshorder/error.hpp>
@@ -22,7 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFaultyInput = 2;
 constexpr std::array kOrdersOfMesh{"auto", "hilbert", "rcm", "spectral-fronts", "hilbert-fronts"};
 constexpr std::array kOrdersOfMatrix{"auto", "rcm", "spectral-fronts"};
 constexpr const char* kRenumberMesh = "renumberMesh";
@@ -56,7 +56,7 @@ TrialRun run_to_order(const TrialCommand& command, const std::string& path, cons
   std::string failure = failure_of(run, command);
   const std::size_t at = failure.find(kName);
   if (at != std::string::npos) failure = failure.substr(at + kName.size());
-  throw CommandError(replaced(failure, path, shown), kFaultyInput);
+  throw CommandError(replaced(failure, path, shown), kBadInput);
 }
 
 nlohmann::json printed(const TrialFolder& folder) {

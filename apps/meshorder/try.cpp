@@ -5,7 +5,6 @@
 #include "progress.hpp"
 #include "trial.hpp"
 #include "trial_subject.hpp"
-#include "try_page.hpp"
 #include "try_report.hpp"
 #include "wording.hpp"
 #include <meshorder/error.hpp>

@@ -1,8 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "try_page.hpp"
-
 #include "base/text.hpp"
-#include "try_finding.hpp"
+#include "try_report.hpp"
 #include "wording.hpp"
 
 #include <fmt/format.h>

@@ -3,18 +3,63 @@
 
 #include "base/median.hpp"
 #include "payoff/quantities.hpp"
-#include "try_finding.hpp"
 #include "wording.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <optional>
+#include <string_view>
 
 namespace meshorder::command {
 namespace {
+
+/// Returns "1.12", near 1 "1.003".
+std::string ratio_in_words(double ratio) {
+  constexpr double kNear = 0.05;
+  return std::abs(ratio - 1) < kNear ? fmt::format("{:.3f}", ratio) : fmt::format("{:.2f}", ratio);
+}
+
+namespace fs = std::filesystem;
+
+// expected number of runs: of the best order (a first run, the rounds of selection, the compared pairs), and
+// of each other order
+constexpr double kRunsOfBest = 15;
+constexpr double kRunsOfEach = 3;
+
+bool is_interpreter(std::string_view name) {
+  constexpr std::array kBeginnings{"python", "perl", "ruby", "julia", "octave", "node", "Rscript"};
+  constexpr std::array kShells{"sh", "bash", "dash", "zsh", "ksh"};
+  return std::ranges::any_of(kBeginnings, [&](std::string_view word) { return name.starts_with(word); }) ||
+         std::ranges::find(kShells, name) != kShells.end();
+}
+
+/// Returns a number of seconds rounded up to two digits.
+double rounded_up(double seconds) {
+  const double scale = std::pow(10, 1 - std::floor(std::log10(seconds)));
+  return std::ceil(seconds * scale) / scale;
+}
+
+/// Returns "in rcm it is 1.02× as fast (0.97–1.07)".
+std::string nearest_in_words(const TrialReport& report, std::size_t order) {
+  const TimeRatio speedup = report.trials.speedup(order);
+  return fmt::format("in {} it is {}× as fast ({})", report.orders[order].name, ratio_in_words(speedup.ratio),
+                     interval_in_words(speedup));
+}
+
+std::string undecided_in_words(const TrialReport& report, std::size_t best) {
+  const std::string program = program_name(report.command);
+  const double budget = needed_budget(report).value_or(report.budget_seconds);
+  if (interval_in_words(report.trials.speedup(best)).empty())
+    return fmt::format("undecided: too few runs of {} to say; raise --budget to {:.6g} s", program, budget);
+  return fmt::format(
+      "undecided: the runs of {} vary too much to say; {}, and --budget {:.6g} halves the range", program,
+      nearest_in_words(report, best), budget);
+}
 
 constexpr int kBarWidth = 24;
 
@@ -47,6 +92,91 @@ nlohmann::ordered_json order_json(const TrialReport& report, std::size_t number)
 }
 
 }  // namespace
+
+bool is_in_seconds(const TrialReport& report) { return report.time == "cpu" || report.time == "wall"; }
+
+bool is_faster(const TrialReport& report) { return report.trials.verdict() == TrialVerdict::faster; }
+
+std::string verdict_name(const TrialReport& report) {
+  switch (report.trials.verdict()) {
+    case TrialVerdict::faster:
+      return "faster";
+    case TrialVerdict::slower:
+      return "slower";
+    case TrialVerdict::tie:
+      return "tie";
+    case TrialVerdict::undecided:
+      break;
+  }
+  return "undecided";
+}
+
+std::string program_name(const std::vector<std::string>& command) {
+  std::string program = fs::path(command.front()).filename().string();
+  if (!is_interpreter(program)) return program;
+  for (auto word = command.begin() + 1; word != command.end(); ++word) {
+    if (*word == "-c" || *word == "-e" || word->starts_with('{')) break;  // a script's text, not its name
+    if (!word->empty() && !word->starts_with('-')) return fs::path(*word).filename().string();
+  }
+  return program;
+}
+
+std::string interval_in_words(const TimeRatio& speedup) {
+  return std::isinf(speedup.high) ? "" : ratio_in_words(speedup.low) + "–" + ratio_in_words(speedup.high);
+}
+
+std::optional<double> runs_to_pay(const TrialReport& report) {
+  if (!is_in_seconds(report) || !is_faster(report)) return std::nullopt;
+  const std::size_t best = *report.trials.best();
+  const double gain = time_of(report, 0) - time_of(report, best);
+  return std::max(1.0, std::ceil(report.orders[best].order_seconds / gain));
+}
+
+std::size_t orders_that_fit(double runs) {
+  constexpr double kMost = 1e6;
+  return static_cast<std::size_t>(std::max(1.0, (std::min(runs, kMost) - kRunsOfBest) / kRunsOfEach));
+}
+
+std::optional<double> needed_budget(const TrialReport& report) {
+  const std::optional<std::size_t> best = report.trials.best();
+  if (!best || report.trials.verdict() != TrialVerdict::undecided) return std::nullopt;
+  constexpr double kFourfold = 4;  // the interval's width falls with the root of the number of runs
+  if (!std::isinf(report.trials.speedup(*best).high)) return rounded_up(kFourfold * report.budget_seconds);
+  constexpr double kReserve = 1.25;
+  auto others = static_cast<double>(report.left_out.size());
+  double runs = 0;
+  for (const TriedOrder& order : report.orders) {
+    runs += 1 + static_cast<double>(order.times.size());
+    if (order.fault.empty() && &order != &report.orders.front()) ++others;
+  }
+  const double needed = kReserve * (kRunsOfBest + kRunsOfEach * others) * report.run_seconds / runs;
+  return rounded_up(std::max(needed, kReserve * report.budget_seconds));
+}
+
+std::string trial_in_words(const TrialReport& report) {
+  const std::string program = program_name(report.command);
+  const std::optional<std::size_t> best = report.trials.best();
+  if (!best) return fmt::format("{} was not tried in another order: all are the mesh's own", program);
+  switch (report.trials.verdict()) {
+    case TrialVerdict::faster: {
+      const TimeRatio speedup = report.trials.speedup(*best);
+      const std::optional<double> runs = runs_to_pay(report);
+      return fmt::format("{} runs {}× faster ({}) in {}; `{}` makes it{}", program,
+                         ratio_in_words(speedup.ratio), interval_in_words(speedup), report.orders[*best].name,
+                         report.orders[*best].made_by,
+                         runs ? fmt::format("; pays after {:.0f} run{}", *runs, *runs == 1 ? "" : "s") : "");
+    }
+    case TrialVerdict::slower:
+      return fmt::format("slower: {} runs fastest in the mesh's own order; {}", program,
+                         nearest_in_words(report, *best));
+    case TrialVerdict::tie:
+      return fmt::format("tie: no order tried makes {} faster by more than {} %; {}", program, 100 * kTie,
+                         nearest_in_words(report, *best));
+    case TrialVerdict::undecided:
+      break;
+  }
+  return undecided_in_words(report, *best);
+}
 
 double time_of(const TrialReport& report, std::size_t order) {
   const double own = median(report.orders.front().times);

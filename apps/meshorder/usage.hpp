@@ -1,12 +1,14 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
 class App;
+class FormatterBase;
 class ParseError;
 }  // namespace CLI
 
@@ -30,5 +32,8 @@ std::optional<std::string> unknown_command(const CLI::App& app);
 /// Returns what is wrong with the parsed arguments and which help to read. Looks first for unknown commands
 /// and options, and names the nearest known one; otherwise returns the parser's own error.
 std::string usage_fault(const CLI::App& app, const CLI::ParseError& error);
+
+/// Returns the layout of the help: descriptions are wrapped so that no line is longer than 100 columns.
+std::shared_ptr<CLI::FormatterBase> help_format();
 
 }  // namespace meshorder::command

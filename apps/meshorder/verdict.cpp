@@ -135,8 +135,7 @@ nlohmann::ordered_json to_json(const Advice& advice) {
   }
   return {{"sentence", to_string(advice)},
           {"by", advice.as_is.costs.measured ? "measurement" : "prediction"},
-          {"machine",
-           advice.machine.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(advice.machine)},
+          {"machine", or_null(advice.machine)},
           {"kernel_set", to_string(advice.kernel_set)},
           {"threads", advice.threads},
           {"kernels", kernels},

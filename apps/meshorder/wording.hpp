@@ -12,9 +12,13 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshorder::command {
+
+/// Returns a text as JSON; null for an empty text.
+nlohmann::ordered_json or_null(std::string_view text);
 
 /// Returns {"mean", "max", "mean_log2"}.
 nlohmann::ordered_json to_json(const EdgeSpan& span);
@@ -54,5 +58,9 @@ std::string in_shell(const std::string& text);
 
 /// Returns `text` with `with` in place of each `what`.
 std::string replaced(std::string text, std::string_view what, const std::string& with);
+
+/// Merges notes that differ only in their first quoted name: "the set 'a' of vertices is not written
+/// (likewise 'b', 'c' and 15 more)". The merged note takes the position of the first of them.
+Notes grouped_by_name(const Notes& notes);
 
 }  // namespace meshorder::command
