@@ -175,32 +175,6 @@ nlohmann::ordered_json attachments(const Mesh& mesh) {
   return {{"data", data}, {"sets", sets}};
 }
 
-void print_attachments(const Console& console, const Mesh& mesh) {
-  const auto list = [&](Association association) {
-    std::vector<std::string> names;
-    for (const DataArray& array : mesh.data) {
-      if (array.association == association) names.push_back(visible(array.name));
-    }
-    for (const EntitySet& set : mesh.sets) {
-      if (set.association == association) names.push_back("set " + visible(set.name));
-    }
-    return join(names);
-  };
-  for (const auto& [association, title] :
-       {std::pair(Association::vertices, "on vertices"), std::pair(Association::cells, "on cells")}) {
-    const std::string names = list(association);
-    if (!names.empty()) console.print("{:<12} {}", title, names);
-  }
-}
-
-/// Counts of the vertex graph of a mesh.
-struct GraphFacts {
-  ComponentCounts components;
-  EdgeSpan span;
-  Offset profile = 0;
-  std::vector<Offset> histogram;
-};
-
 /// Prints the contents of a mesh and the distances of its neighbours.
 void print_mesh_facts(const Console& console, const Mesh& mesh, Offset edges, const GraphFacts& facts,
                       Offset degenerate) {
@@ -209,7 +183,7 @@ void print_mesh_facts(const Console& console, const Mesh& mesh, Offset edges, co
   console.print("{:<12} {} {}", "vertices", with_commas(mesh.vertex_count()),
                 has_places(mesh) ? fmt::format("in {} dimensions", mesh.dimension) : "without coordinates");
   console.print("{:<12} {}", "cells", cells_in_words(mesh));
-  print_attachments(console, mesh);
+  print_attachments(console, mesh, "on vertices", "on cells");
   console.print("{:<12} {} edges, {} {}{}", "graph", with_commas(edges), with_commas(connected),
                 connected == 1 ? "component" : "components",
                 isolated > 0 ? fmt::format(", {} unused vertices", with_commas(isolated)) : "");
@@ -267,9 +241,6 @@ Findings counted(const InfoArguments& arguments, const Mesh& mesh, SimplicesRef 
       [&] { found.degenerate = std::ssize(degenerate_cells(mesh.cells)); },
       [&] { found.matrix.facts = facts_of(found.matrix.pattern); }};
   take_turns(index_size(looks), [&](Index turn) { looks[turn](); });
-  found.matrix.components = found.facts.components;
-  found.matrix.span = found.facts.span;
-  found.matrix.profile = found.facts.profile;
   return found;
 }
 
@@ -322,7 +293,7 @@ void print_findings(const Console& console, const InfoArguments& arguments, cons
   print_verdict(console, arguments, found);
   console.print("\n{:<12} {}", "format", found.format);
   if (found.stored != nullptr) {
-    print_matrix(console, mesh, found.matrix);
+    print_matrix(console, mesh, found.matrix, found.facts);
   } else {
     print_mesh_facts(console, mesh, found.graph.edge_count(), found.facts, found.degenerate);
   }

@@ -2,6 +2,7 @@
 #include "matrix_report.hpp"
 
 #include "io/matrix/matrix.hpp"
+#include "wording.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -28,20 +29,6 @@ std::string components_in_words(const ComponentCounts& counts, bool is_graph) {
                              is_graph ? "edge" : "entry");
 }
 
-/// Prints the names of the arrays, without the entries' values.
-void print_arrays(const Console& console, const Mesh& mesh, bool is_graph) {
-  for (const auto& [association, title] :
-       {std::pair(Association::vertices, is_graph ? "on vertices" : "on rows"),
-        std::pair(Association::cells, is_graph ? "on edges" : "on entries")}) {
-    std::vector<std::string> names;
-    for (const DataArray& array : mesh.data) {
-      const bool shown = array.association == association && (is_graph || array.name != matrix::kValue);
-      if (shown) names.push_back(visible(array.name));
-    }
-    if (!names.empty()) console.print("{:<12} {}", title, join(names));
-  }
-}
-
 void print_pattern(const Console& console, const StoredMatrix& stored, const MatrixReport& report) {
   const PatternFacts& facts = report.facts;
   console.print("{:<12} {}{}", "field", stored.field,
@@ -64,6 +51,23 @@ void print_pattern(const Console& console, const StoredMatrix& stored, const Mat
 
 }  // namespace
 
+void print_attachments(const Console& console, const Mesh& mesh, const char* on_vertices,
+                       const char* on_cells) {
+  const bool is_matrix = stored_matrix(mesh) != nullptr && !stored_matrix(mesh)->is_graph;
+  for (const auto& [association, title] :
+       {std::pair(Association::vertices, on_vertices), std::pair(Association::cells, on_cells)}) {
+    std::vector<std::string> names;
+    for (const DataArray& array : mesh.data) {
+      if (array.association == association && !(is_matrix && array.name == matrix::kValue))
+        names.push_back(visible(array.name));
+    }
+    for (const EntitySet& set : mesh.sets) {
+      if (set.association == association) names.push_back("set " + visible(set.name));
+    }
+    if (!names.empty()) console.print("{:<12} {}", title, join(names));
+  }
+}
+
 std::string size_in_words(const StoredMatrix& stored, const EntryPattern& pattern) {
   return stored.is_graph ? fmt::format("{} vertices, {} edges", with_commas(pattern.rows()),
                                        with_commas(pattern.entries() / 2))
@@ -71,7 +75,8 @@ std::string size_in_words(const StoredMatrix& stored, const EntryPattern& patter
                                        with_commas(pattern.entries()));
 }
 
-void print_matrix(const Console& console, const Mesh& mesh, const MatrixReport& report) {
+void print_matrix(const Console& console, const Mesh& mesh, const MatrixReport& report,
+                  const GraphFacts& graph) {
   const StoredMatrix& stored = *stored_matrix(mesh);
   const PatternFacts& facts = report.facts;
   console.print("{:<12} {}", stored.is_graph ? "graph" : "matrix", size_in_words(stored, report.pattern));
@@ -82,13 +87,14 @@ void print_matrix(const Console& console, const Mesh& mesh, const MatrixReport& 
     print_pattern(console, stored, report);
   }
   if (has_places(mesh)) console.print("{:<12} in {} dimensions", "coordinates", mesh.dimension);
-  print_arrays(console, mesh, stored.is_graph);
-  console.print("{:<12} {}", "joined", components_in_words(report.components, stored.is_graph));
+  print_attachments(console, mesh, stored.is_graph ? "on vertices" : "on rows",
+                    stored.is_graph ? "on edges" : "on entries");
+  console.print("{:<12} {}", "joined", components_in_words(graph.components, stored.is_graph));
   console.print("{:<12} mean {:.1f} {}, mean log2 {:.2f} (a random order: mean {:.0f})", "distance",
-                report.span.mean, stored.is_graph ? "between the ends of an edge" : "from the diagonal",
-                report.span.mean_log2, (mesh.vertex_count() + 1) / 3.0);
-  console.print("{:<12} {}", "bandwidth", with_commas(report.span.max));
-  console.print("{:<12} {}", "profile", with_commas(report.profile));
+                graph.span.mean, stored.is_graph ? "between the ends of an edge" : "from the diagonal",
+                graph.span.mean_log2, (mesh.vertex_count() + 1) / 3.0);
+  console.print("{:<12} {}", "bandwidth", with_commas(graph.span.max));
+  console.print("{:<12} {}", "profile", with_commas(graph.profile));
 }
 
 nlohmann::ordered_json to_json(const Mesh& mesh, const MatrixReport& report) {
@@ -99,9 +105,8 @@ nlohmann::ordered_json to_json(const Mesh& mesh, const MatrixReport& report) {
       {"rows", report.pattern.rows()},
       {"entries", report.pattern.entries()},
       {"stored", stored.is_half ? "half" : "all"},
-      {"field", stored.is_graph ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(stored.field)},
-      {"symmetry",
-       stored.is_graph ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(stored.symmetry)},
+      {"field", or_null(stored.is_graph ? "" : stored.field)},
+      {"symmetry", or_null(stored.is_graph ? "" : stored.symmetry)},
       {"in_a_row", {{"mean", mean_in_row(report.pattern)}, {"most", facts.most_in_row}}},
       {"symmetric_pattern", facts.is_symmetric},
       {"missing_diagonal", facts.missing_diagonal},

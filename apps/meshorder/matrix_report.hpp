@@ -10,17 +10,27 @@
 
 namespace meshorder::command {
 
+/// Counts of the vertex graph of a mesh; for a matrix A, of A + A′.
+struct GraphFacts {
+  ComponentCounts components;
+  EdgeSpan span;
+  Offset profile = 0;
+  std::vector<Offset> histogram;
+};
+
 /// The report of `info` on a matrix or graph.
 struct MatrixReport {
   EntryPattern pattern;
   PatternFacts facts;
-  ComponentCounts components;
-  EdgeSpan span;       ///< of A + A′
-  Offset profile = 0;  ///< of A + A′
 };
 
+/// Prints the names of arrays and sets, without a matrix's values.
+void print_attachments(const Console& console, const Mesh& mesh, const char* on_vertices,
+                       const char* on_cells);
+
 /// Prints the report in terms of matrices, or of graphs. `mesh` is the one that was read.
-void print_matrix(const Console& console, const Mesh& mesh, const MatrixReport& report);
+void print_matrix(const Console& console, const Mesh& mesh, const MatrixReport& report,
+                  const GraphFacts& graph);
 
 /// Returns the object `matrix` of docs/json.md.
 nlohmann::ordered_json to_json(const Mesh& mesh, const MatrixReport& report);
