@@ -150,9 +150,8 @@ void NcInput::inquire() {
   int variable_count = 0;
   check(nc_inq(id_, &dimension_count, &variable_count, nullptr, nullptr), "");
   int unlimited_count = 0;
-  std::vector<int> unlimited(static_cast<std::size_t>(dimension_count));
   check(nc_inq_unlimdims(id_, &unlimited_count, nullptr), "");
-  unlimited.resize(static_cast<std::size_t>(unlimited_count));
+  std::vector<int> unlimited(static_cast<std::size_t>(unlimited_count));
   check(nc_inq_unlimdims(id_, &unlimited_count, unlimited.data()), "");
 
   std::array<char, NC_MAX_NAME + 1> name{};
@@ -169,9 +168,9 @@ void NcInput::inquire() {
   for (int id = 0; id < variable_count; ++id) {
     Variable variable{.id = id, .name = {}, .type = 0, .dimensions = {}};
     int rank = 0;
-    check(nc_inq_varndims(id_, id, &rank), "");
+    check(nc_inq_var(id_, id, name.data(), &variable.type, &rank, nullptr, nullptr), "");
     variable.dimensions.resize(static_cast<std::size_t>(rank));
-    check(nc_inq_var(id_, id, name.data(), &variable.type, nullptr, variable.dimensions.data(), nullptr), "");
+    check(nc_inq_vardimid(id_, id, variable.dimensions.data()), "");
     variable.name = name.data();
     for (int& dimension : variable.dimensions) dimension = place_of.at(dimension);
     check_chunks(variable);
@@ -245,7 +244,7 @@ std::size_t NcInput::claimed(std::string_view what, std::size_t count, std::size
 std::vector<Attribute> NcInput::attributes(const Variable* variable, std::vector<std::string>& lost) const {
   const int of = variable == nullptr ? NC_GLOBAL : variable->id;
   int count = 0;
-  check(variable == nullptr ? nc_inq_natts(id_, &count) : nc_inq_varnatts(id_, of, &count), "");
+  check(nc_inq_varnatts(id_, of, &count), "");
   std::vector<Attribute> result;
   std::array<char, NC_MAX_NAME + 1> name{};
   for (int i = 0; i < count; ++i) {
@@ -307,11 +306,6 @@ std::vector<std::int64_t> NcInput::integers(const Variable& variable, const std:
   if (values.empty()) return {};
   check(nc_get_vara_longlong(id_, variable.id, starts.data(), counts.data(), values.data()), variable.name);
   return {values.begin(), values.end()};
-}
-
-std::vector<double> NcInput::reals(const Variable& variable) const {
-  const std::vector<std::size_t> lengths = shape(variable);
-  return reals(variable, std::vector<std::size_t>(lengths.size(), 0), lengths);
 }
 
 std::vector<double> NcInput::reals(const Variable& variable, const std::vector<std::size_t>& starts,
@@ -442,10 +436,6 @@ void NcOutput::check(int status, const std::string& what) const {
       status == NC_EHDFERR ? "is the disk full?" : "another format, such as .vtu, may hold the mesh");
 }
 
-bool NcOutput::holds_wide_integers() const noexcept {
-  return storage_.kind == NC_FORMAT_CDF5 || storage_.kind == NC_FORMAT_NETCDF4;
-}
-
 void NcOutput::put_attribute(int variable, const Attribute& attribute, const std::string& of) const {
   if (attribute.name == "_NCProperties") return;  // netCDF writes it itself
   if (attribute.type == kChar) {
@@ -501,39 +491,32 @@ void NcOutput::finish() {
   if (out_) out_->commit();
 }
 
+template <class Number>
 void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
-                  const std::vector<std::int32_t>& values) const {
+                  const std::vector<Number>& values) const {
   if (values.empty()) return;
-  file_->check(nc_put_vara_int(file_->id_, variable_, starts.data(), counts.data(), values.data()), name_);
+  const auto put = [&](const auto& function, const auto& numbers) {
+    file_->check(function(file_->id_, variable_, starts.data(), counts.data(), numbers.data()), name_);
+  };
+  if constexpr (std::is_same_v<Number, double>) {
+    put(nc_put_vara_double, values);
+  } else if constexpr (std::is_same_v<Number, float>) {
+    put(nc_put_vara_float, values);
+  } else if constexpr (std::is_same_v<Number, std::int32_t>) {
+    put(nc_put_vara_int, values);
+  } else if constexpr (std::is_signed_v<Number>) {
+    put(nc_put_vara_longlong, std::vector<long long>(values.begin(), values.end()));
+  } else {
+    put(nc_put_vara_ulonglong, std::vector<unsigned long long>(values.begin(), values.end()));
+  }
 }
 
-void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
-                  const std::vector<double>& values) const {
-  if (values.empty()) return;
-  file_->check(nc_put_vara_double(file_->id_, variable_, starts.data(), counts.data(), values.data()), name_);
-}
-
-void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
-                  const std::vector<float>& values) const {
-  if (values.empty()) return;
-  file_->check(nc_put_vara_float(file_->id_, variable_, starts.data(), counts.data(), values.data()), name_);
-}
-
-void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
-                  const std::vector<std::int64_t>& values) const {
-  if (values.empty()) return;
-  const std::vector<long long> numbers(values.begin(), values.end());
-  file_->check(nc_put_vara_longlong(file_->id_, variable_, starts.data(), counts.data(), numbers.data()),
-               name_);
-}
-
-void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
-                  const std::vector<std::uint64_t>& values) const {
-  if (values.empty()) return;
-  const std::vector<unsigned long long> numbers(values.begin(), values.end());
-  file_->check(nc_put_vara_ulonglong(file_->id_, variable_, starts.data(), counts.data(), numbers.data()),
-               name_);
-}
+using Places = const std::vector<std::size_t>&;
+template void NcSink::part(Places, Places, const std::vector<double>&) const;
+template void NcSink::part(Places, Places, const std::vector<float>&) const;
+template void NcSink::part(Places, Places, const std::vector<std::int32_t>&) const;
+template void NcSink::part(Places, Places, const std::vector<std::int64_t>&) const;
+template void NcSink::part(Places, Places, const std::vector<std::uint64_t>&) const;
 
 void NcSink::bytes(const std::vector<std::size_t>& counts, const std::string& values) const {
   if (values.empty()) return;

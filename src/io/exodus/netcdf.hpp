@@ -130,7 +130,6 @@ class NcInput {
   [[nodiscard]] std::vector<std::int64_t> integers(const Variable& variable,
                                                    const std::vector<std::size_t>& starts,
                                                    const std::vector<std::size_t>& counts) const;
-  [[nodiscard]] std::vector<double> reals(const Variable& variable) const;
   /// Returns a part of the values, as `read`.
   [[nodiscard]] std::vector<double> reals(const Variable& variable, const std::vector<std::size_t>& starts,
                                           const std::vector<std::size_t>& counts) const;
@@ -178,16 +177,10 @@ class NcSink {
     part({0}, {values.size()}, values);
   }
   /// Writes a part of the values: along each dimension `counts` values from `starts` on.
+  /// Number: double, float, std::int32_t, std::int64_t or std::uint64_t.
+  template <class Number>
   void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
-            const std::vector<double>& values) const;
-  void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
-            const std::vector<float>& values) const;
-  void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
-            const std::vector<std::int64_t>& values) const;
-  void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
-            const std::vector<std::uint64_t>& values) const;
-  void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
-            const std::vector<std::int32_t>& values) const;
+            const std::vector<Number>& values) const;
   /// Writes the first `counts` values along each dimension, given as bytes in the variable's type.
   void bytes(const std::vector<std::size_t>& counts, const std::string& values) const;
 
@@ -224,8 +217,6 @@ class NcOutput {
   /// Adds a function that `finish` calls.
   void later(std::function<void()> put) { puts_.push_back(std::move(put)); }
   [[nodiscard]] bool has_variable(const std::string& name) const { return declared_.contains(name); }
-  /// Returns whether the file can hold 64-bit integers.
-  [[nodiscard]] bool holds_wide_integers() const noexcept;
 
   /// Writes all values, and puts the file in place unless the caller does so.
   void finish();
