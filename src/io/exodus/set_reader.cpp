@@ -8,106 +8,71 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <limits>
+#include <cstdint>
 #include <optional>
-#include <tuple>
-#include <type_traits>
 
 // Reads sets of nodes, sides and elements with their distribution factors, and variables over the steps.
 
 namespace meshorder::exodus {
 namespace {
 
-/// The entries of a list of nodes or elements whose members are in the range that is read.
+/// The entries of a set's list whose members are in the range that is read.
 struct Entries {
   std::vector<Index> places;   ///< in the list, ascending
-  std::vector<Index> members;  ///< positions in the whole mesh
-};
-
-/// Entries of a list of sides.
-struct SideEntries : Entries {
-  std::vector<int> sides;
-  // for a list of factors with one factor for each node of a side
+  std::vector<Index> members;  ///< positions in the range
+  std::vector<int> sides;      ///< from 1; 1 in sets of nodes and elements
+  // of side sets, for a list of factors with one factor for each node of a side
   std::vector<Offset> first_factors;
   std::vector<int> nodes;
   Offset factors = 0;  ///< number of factors of all entries of the list, read or not
   int most_nodes = 0;  ///< largest number of nodes of an entry of the list, read or not
 };
 
-/// A side set, element by element.
-struct Sides {
-  Entries cells;                    ///< each cell once, with the place of its first entry
-  std::vector<std::int32_t> masks;  ///< sides of each cell: bit s − 1 for side s
-  std::vector<Index>
-      row_of_entry;  ///< for each entry, the place of its cell in `cells`; −1 if it is repeated
-  std::vector<int> rank_of_entry;  ///< for each entry, its place among the sides of the cell
-  int most_sides = 0;              ///< largest number of sides of a cell
+/// The members of a set, each once, in the sequence of their first entries.
+struct Members {
+  std::vector<Index> members;
+  std::vector<Index> places;        ///< of the first entry of each
+  std::vector<std::int32_t> masks;  ///< sides of each: bit s − 1 for side s
+  std::vector<Index> row_of_entry;  ///< for each entry, the place of its member here; −1 if it is repeated
+  int most_sides = 1;               ///< largest number of sides of a member
 };
 
-/// Pieces of a list, ascending: lengths[i] values from begins[i] on.
-struct Pieces {
-  std::vector<Offset> begins;
-  std::vector<int> lengths;
-};
+std::int32_t bit_of_side(int side) { return 1 << (side - 1); }
 
-Pieces single_values(const std::vector<Index>& places) {
-  return {{places.begin(), places.end()}, std::vector<int>(places.size(), 1)};
-}
+int bit_count(std::int32_t mask) { return std::popcount(static_cast<std::uint32_t>(mask)); }
 
-/// Returns the values of pieces of a list, one after another. `read(first, count)` returns values of the
-/// list; pieces that lie within `most` values are read together.
-template <class Read>
-Values chosen(const Pieces& pieces, std::size_t most, const Read& read) {
-  Values result = read(0, 0);
-  const std::size_t count = pieces.begins.size();
-  const auto end_of = [&](std::size_t i) { return pieces.begins[i] + pieces.lengths[i]; };
-  std::size_t i = 0;
-  while (i < count) {
-    const Offset from = pieces.begins[i];
-    std::size_t end = i + 1;
-    while (end < count && static_cast<std::size_t>(end_of(end) - from) <= most) ++end;
-    const Values some =
-        read(static_cast<std::size_t>(from), static_cast<std::size_t>(end_of(end - 1) - from));
-    std::visit(
-        [&](auto& all) {
-          const auto& found = std::get<std::decay_t<decltype(all)>>(some);
-          for (std::size_t k = i; k < end; ++k) {
-            const auto begin = found.begin() + static_cast<std::ptrdiff_t>(pieces.begins[k] - from);
-            all.insert(all.end(), begin, begin + pieces.lengths[k]);
-          }
-        },
-        result);
-    i = end;
+Members without_repeated(const Entries& own, bool are_sides) {
+  const Index count = index_size(own.members);
+  std::vector<Index> entries = index_range(0, count);
+  std::stable_sort(entries.begin(), entries.end(),
+                   [&](Index a, Index b) { return own.members[a] < own.members[b]; });
+  Members result;
+  // for each entry, find the first entry with the same member
+  std::vector<Index>& rows = result.row_of_entry;
+  rows.resize(own.members.size());
+  for (Index i = 0; i < count; ++i) {
+    const bool is_first = i == 0 || own.members[entries[i]] != own.members[entries[i - 1]];
+    rows[entries[i]] = is_first ? entries[i] : rows[entries[i - 1]];
   }
-  return result;
-}
-
-int bit_count(std::int32_t mask) {
-  int count = 0;
-  for (; mask != 0; mask &= mask - 1) ++count;
-  return count;
-}
-
-/// Returns one row for each cell: the values of its sides, ascending by side, the values of each side padded
-/// to `width`.
-template <class Number>
-std::vector<Number> packed(const Sides& sides, const std::vector<Number>& values,
-                           const std::vector<int>& counts, int width) {
-  const auto row_width = static_cast<std::size_t>(sides.most_sides) * static_cast<std::size_t>(width);
-  std::vector<Number> result(sides.cells.members.size() * row_width, missing_value<Number>());
-  std::size_t from = 0;
-  for (std::size_t i = 0; i < sides.row_of_entry.size(); ++i) {
-    const auto length = static_cast<std::size_t>(counts[i]);
-    if (sides.row_of_entry[i] >= 0) {
-      const std::size_t into =
-          static_cast<std::size_t>(sides.row_of_entry[i]) * row_width +
-          static_cast<std::size_t>(sides.rank_of_entry[i]) * static_cast<std::size_t>(width);
-      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(from), length,
-                  result.begin() + static_cast<std::ptrdiff_t>(into));
+  for (Index i = 0; i < count; ++i) {
+    if (rows[i] == i) {
+      rows[i] = index_size(result.members);
+      result.members.push_back(own.members[i]);
+      result.places.push_back(own.places[i]);
+      result.masks.push_back(0);
+    } else {
+      rows[i] = rows[rows[i]];
     }
-    from += length;
+    std::int32_t& mask = result.masks[rows[i]];
+    const std::int32_t bit = bit_of_side(own.sides[i]);
+    if ((mask & bit) != 0) rows[i] = -1;
+    mask |= bit;
   }
+  if (are_sides) result.most_sides = 0;
+  for (const std::int32_t mask : result.masks)
+    result.most_sides = std::max(result.most_sides, bit_count(mask));
   return result;
 }
 
@@ -218,12 +183,20 @@ class SetReader {
     }
     const std::size_t size = reading_.file.size(*variable);
     if (size == 0) return add_empty(set);
+    if (is_sides_) reading_.require_shape(*sides, {size});
+    const Entries own = read_entries(*variable, sides);
+    const Members members = without_repeated(own, is_sides_);
+    note_repeated(set, size, members.row_of_entry);
     if (is_sides_) {
-      reading_.require_shape(*sides, {size});
-      add_sides(number, set, size, read_sides(*variable, *sides));
+      set.in_mesh = add_rows(title(kind_, set.in_mesh), members, members.masks);
     } else {
-      add_members(number, set, size, read_members(*variable));
+      MeshPart::SetRows rows;
+      if (!reading_.is_whole()) rows = {static_cast<Index>(size), members.places};
+      set.in_mesh = reading_.add_set({set.in_mesh, kind_.association, members.members}, std::move(rows));
     }
+    if (const Variable* const factors = reading_.take(fmt::format("dist_fact_{}{}", kind_.prefix, number)))
+      read_factors(set, size, own, members, *factors);
+    read_set_variables(number, set, size, own, members);
   }
 
   /// Adds a set without members. An empty side set gets no array.
@@ -232,89 +205,16 @@ class SetReader {
   }
 
   /// Notes that repeated entries are dropped. If only a part is read, records the counts for the caller.
-  void note_repeated(const SetRecord& set, std::size_t size, std::size_t kept) {
+  void note_repeated(const SetRecord& set, std::size_t size, const std::vector<Index>& row_of_entry) {
     const std::string name = title(kind_, set.in_mesh);
+    const auto repeated = std::count(row_of_entry.begin(), row_of_entry.end(), Index{-1});
     if (!reading_.is_whole()) {
-      reading_.part.lists.push_back({name, static_cast<Index>(size), static_cast<Index>(kept)});
-    } else if (kept < size) {
-      reading_.notes.push_back(note_of_repeated(name, size - kept));
+      const auto kept = static_cast<Index>(std::ssize(row_of_entry) - repeated);
+      reading_.part.lists.push_back({name, static_cast<Index>(size), kept});
+    } else if (repeated > 0) {
+      reading_.notes.push_back(note_of_repeated(name, static_cast<std::size_t>(repeated)));
     }
   }
-
-  // ---- nodes and elements
-
-  [[nodiscard]] Entries read_members(const Variable& variable) const {
-    const MeshRange range = reading_.range(kind_.association);
-    Entries own;
-    for_numbers(variable, [&](std::size_t first, const std::vector<std::int32_t>& numbers) {
-      for (std::size_t i = 0; i < numbers.size(); ++i) {
-        const Index member = place_of(numbers[i], variable, first + i);
-        if (!range.contains(member)) continue;
-        own.places.push_back(static_cast<Index>(first + i));
-        own.members.push_back(member);
-      }
-    });
-    return own;
-  }
-
-  /// Returns the entries without repeated members; the first of each stays.
-  static Entries without_repeated(const Entries& own) {
-    std::vector<Index> entries = index_range(0, index_size(own.members));
-    std::stable_sort(entries.begin(), entries.end(),
-                     [&](Index a, Index b) { return own.members[a] < own.members[b]; });
-    entries.erase(std::unique(entries.begin(), entries.end(),
-                              [&](Index a, Index b) { return own.members[a] == own.members[b]; }),
-                  entries.end());
-    std::sort(entries.begin(), entries.end());
-    Entries result;
-    result.places.reserve(entries.size());
-    result.members.reserve(entries.size());
-    for (const Index entry : entries) {
-      result.places.push_back(own.places[entry]);
-      result.members.push_back(own.members[entry]);
-    }
-    return result;
-  }
-
-  void add_members(std::size_t number, SetRecord& set, std::size_t size, const Entries& listed) {
-    const Entries own = in_range(without_repeated(listed));
-    note_repeated(set, size, own.members.size());
-    MeshPart::SetRows rows;
-    if (!reading_.is_whole()) rows = {static_cast<Index>(size), own.places};
-    set.in_mesh = reading_.add_set({set.in_mesh, kind_.association, own.members}, std::move(rows));
-
-    const Pieces pieces = single_values(own.places);
-    if (const Variable* const factors = reading_.take(fmt::format("dist_fact_{}{}", kind_.prefix, number))) {
-      reading_.require_shape(*factors, {size});
-      set.factor_type = factors->type;
-      add_rows(title(kind_, set.in_mesh) + std::string(kFactors), own,
-               chosen(pieces, reading_.values_at_once(), [&](std::size_t first, std::size_t count) {
-                 return reading_.file.values(*factors, {first}, {count});
-               }));
-    }
-    read_set_variables(number, set, size, pieces, [&](Values values, const std::string& name) {
-      return add_rows(name, own, std::move(values));
-    });
-  }
-
-  /// Returns the entries with members counted from the start of the range that is read.
-  [[nodiscard]] Entries in_range(Entries entries) const {
-    const Index first = reading_.range(kind_.association).first;
-    for (Index& member : entries.members) member -= first;
-    return entries;
-  }
-
-  /// Adds an array with a row for each of the entries; returns its name.
-  std::string add_rows(const std::string& name, const Entries& rows, Values values, Index components = 1) {
-    return reading_.add_array({.name = name,
-                               .association = kind_.association,
-                               .components = components,
-                               .values = std::move(values),
-                               .indices = rows.members},
-                              {true, reading_.is_whole() ? std::vector<Index>() : rows.places});
-  }
-
-  // ---- sides
 
   /// Throws InputError if elements of the block have no side of that number.
   void require_side(const BlockRecord& block, std::int64_t side, const Variable& variable,
@@ -327,21 +227,27 @@ class SetReader {
                        "sides are counted from 1");
   }
 
-  [[nodiscard]] SideEntries read_sides(const Variable& elements, const Variable& variable) const {
-    const MeshRange range = reading_.range(Association::cells);
-    SideEntries own;
-    for_numbers(elements, [&](std::size_t first, const std::vector<std::int32_t>& numbers) {
-      const std::vector<std::int64_t> sides = reading_.file.integers(variable, {first}, {numbers.size()});
+  /// Reads the entries of a list of nodes or elements. `side_numbers`: their sides, null for other sets.
+  [[nodiscard]] Entries read_entries(const Variable& variable, const Variable* side_numbers) const {
+    const MeshRange range = reading_.range(kind_.association);
+    Entries own;
+    for_numbers(variable, [&](std::size_t first, const std::vector<std::int32_t>& numbers) {
+      std::vector<std::int64_t> sides;
+      if (is_sides_) sides = reading_.file.integers(*side_numbers, {first}, {numbers.size()});
       for (std::size_t i = 0; i < numbers.size(); ++i) {
-        const Index cell = place_of(numbers[i], elements, first + i);
-        const BlockRecord& block = reading_.block_of(cell);
-        require_side(block, sides[i], variable, first + i);
-        const auto side = static_cast<int>(sides[i]);
-        const int faces = faces_of(block.shape, block.type, reading_.metadata->coordinates);
-        const int nodes = nodes_of_side(block.shape, block.nodes, side, faces);
-        if (range.contains(cell)) {
+        const Index member = place_of(numbers[i], variable, first + i);
+        int side = 1;
+        int nodes = 1;
+        if (is_sides_) {
+          const BlockRecord& block = reading_.block_of(member);
+          require_side(block, sides[i], *side_numbers, first + i);
+          side = static_cast<int>(sides[i]);
+          const int faces = faces_of(block.shape, block.type, reading_.metadata->coordinates);
+          nodes = nodes_of_side(block.shape, block.nodes, side, faces);
+        }
+        if (range.contains(member)) {
           own.places.push_back(static_cast<Index>(first + i));
-          own.members.push_back(cell);
+          own.members.push_back(member - range.first);
           own.sides.push_back(side);
           own.first_factors.push_back(own.factors);
           own.nodes.push_back(nodes);
@@ -353,110 +259,96 @@ class SetReader {
     return own;
   }
 
-  static Sides group(const SideEntries& own) {
-    const std::vector<Index>& cells = own.members;
-    const std::vector<int>& sides = own.sides;
-    Sides result;
-    const std::size_t count = cells.size();
-    std::vector<Index> entries = index_range(0, static_cast<Index>(count));
-    std::sort(entries.begin(), entries.end(), [&](Index a, Index b) {
-      return std::tuple(cells[a], sides[a], a) < std::tuple(cells[b], sides[b], b);
+  // ---- values of members
+
+  /// Adds an array with a row for each member; returns its name.
+  std::string add_rows(const std::string& name, const Members& set, Values values, int components = 1) {
+    return reading_.add_array({.name = name,
+                               .association = kind_.association,
+                               .components = components,
+                               .values = std::move(values),
+                               .indices = set.members},
+                              {true, reading_.is_whole() ? std::vector<Index>() : set.places});
+  }
+
+  /// The values of an entry in a list of values.
+  struct Piece {
+    Offset begin;
+    int length;
+  };
+
+  /// Adds an array with a row for each member: the values of its sides, ascending by side, those of each side
+  /// padded to `width`.
+  ///
+  /// @param piece_of  returns the piece of entry i; the pieces ascend
+  /// @param read      `read(first, count)` returns values of the list. Pieces that lie within
+  ///                  `values_at_once` values are read together
+  template <class PieceOf, class Read>
+  std::string add_values(const std::string& name, const Entries& own, const Members& set, int width,
+                         const PieceOf& piece_of, const Read& read) {
+    const int components = set.most_sides * width;
+    const auto place_of_entry = [&](std::size_t i) {
+      const Index row = set.row_of_entry[i];
+      const int rank = bit_count(set.masks[row] & (bit_of_side(own.sides[i]) - 1));
+      return Offset{row} * components + Offset{rank} * width;
+    };
+    const auto end_of = [&](std::size_t i) { return piece_of(i).begin + piece_of(i).length; };
+    Values result = read(std::size_t{0}, std::size_t{0});
+    with_numbers(result, [&]<class Number>(std::vector<Number>& values) {
+      values.assign(set.members.size() * static_cast<std::size_t>(components), missing_value<Number>());
     });
-    // the first entry of each cell, which decides the order of rows, and its place in `entries`
-    std::vector<std::pair<Index, std::size_t>> groups;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (i == 0 || cells[entries[i]] != cells[entries[i - 1]]) {
-        groups.emplace_back(entries[i], i);
-      } else {
-        groups.back().first = std::min(groups.back().first, entries[i]);
+    const std::size_t count = set.row_of_entry.size();
+    for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+      const Offset from = piece_of(begin).begin;
+      for (end = begin + 1; end < count; ++end) {
+        if (static_cast<std::size_t>(end_of(end) - from) > reading_.values_at_once()) break;
       }
+      const Values some =
+          read(static_cast<std::size_t>(from), static_cast<std::size_t>(end_of(end - 1) - from));
+      with_numbers(result, [&]<class Number>(std::vector<Number>& values) {
+        const auto& found = std::get<std::vector<Number>>(some);
+        for (std::size_t i = begin; i < end; ++i) {
+          if (set.row_of_entry[i] < 0) continue;
+          const auto [at, length] = piece_of(i);
+          std::copy_n(found.begin() + (at - from), length, values.begin() + place_of_entry(i));
+        }
+      });
     }
-    std::sort(groups.begin(), groups.end());
-    result.row_of_entry.assign(count, -1);
-    result.rank_of_entry.assign(count, 0);
-    for (const auto& [first, begin] : groups) {
-      const Index cell = cells[first];
-      std::int32_t mask = 0;
-      for (std::size_t i = begin; i < count && cells[entries[i]] == cell; ++i) {
-        const std::int32_t bit = 1 << (sides[entries[i]] - 1);
-        if ((mask & bit) != 0) continue;
-        result.row_of_entry[entries[i]] = index_size(result.cells.members);
-        result.rank_of_entry[entries[i]] = bit_count(mask);
-        mask |= bit;
-      }
-      result.cells.members.push_back(cell);
-      result.cells.places.push_back(own.places[first]);
-      result.masks.push_back(mask);
-      result.most_sides = std::max(result.most_sides, bit_count(mask));
-    }
-    return result;
+    return add_rows(name, set, std::move(result), components);
   }
 
-  void add_sides(std::size_t number, SetRecord& set, std::size_t size, const SideEntries& own) {
-    Sides sides = group(own);
-    sides.cells = in_range(std::move(sides.cells));
-    const auto repeated = std::count(sides.row_of_entry.begin(), sides.row_of_entry.end(), Index{-1});
-    note_repeated(set, size, own.places.size() - static_cast<std::size_t>(repeated));
-    set.in_mesh = add_rows(title(kind_, set.in_mesh), sides.cells, sides.masks);
-    if (const Variable* const factors = reading_.take(fmt::format("dist_fact_ss{}", number))) {
-      add_factors(set, size, own, sides, *factors);
-    }
-    const Pieces pieces = single_values(own.places);
-    read_set_variables(number, set, size, pieces, [&](const Values& values, const std::string& name) {
-      return add_packed(name, sides, values, pieces.lengths, 1);
-    });
-  }
-
-  /// Adds an array of values of sides, with a row for each cell; returns its name.
-  std::string add_packed(const std::string& name, const Sides& sides, const Values& values,
-                         const std::vector<int>& counts, int width) {
-    return std::visit(
-        [&](const auto& all) -> std::string {
-          using Number = typename std::decay_t<decltype(all)>::value_type;
-          if constexpr (std::is_arithmetic_v<Number>) {
-            return add_rows(name, sides.cells, packed(sides, all, counts, width), sides.most_sides * width);
-          } else {
-            return {};
-          }
-        },
-        values);
-  }
-
-  /// Adds an array of the factors of a side set. The file has a factor for each node of a side, or the same
-  /// number of factors for each side; other lists are left out with a note.
-  void add_factors(SetRecord& set, std::size_t size, const SideEntries& own, const Sides& sides,
-                   const Variable& variable) {
+  /// Adds an array of the factors of a set. A set of nodes or elements has a factor for each entry. A side
+  /// set has a factor for each node of a side, or the same number of factors for each side; other lists are
+  /// left out with a note.
+  void read_factors(SetRecord& set, std::size_t size, const Entries& own, const Members& members,
+                    const Variable& variable) {
+    if (!is_sides_) reading_.require_shape(variable, {size});
     const std::size_t values = reading_.file.size(variable);
     set.factor_type = variable.type;
-    Pieces pieces{own.first_factors, own.nodes};
-    const int most = own.most_nodes;
-    int width = most;
-    if (static_cast<std::size_t>(own.factors) != values) {
-      width = static_cast<int>(values / size);
-      if (values % size != 0 || width == 0 || width == most) {
-        reading_.notes.push_back(fmt::format("{} is left out: {} factors do not fit the nodes of {} sides",
-                                             variable.name, values, size));
-        return;
-      }
-      pieces.lengths.assign(own.places.size(), width);
-      for (std::size_t i = 0; i < own.places.size(); ++i) pieces.begins[i] = Offset{own.places[i]} * width;
+    const bool by_nodes = static_cast<std::size_t>(own.factors) == values;
+    const int width = by_nodes ? own.most_nodes : static_cast<int>(values / size);
+    if (!by_nodes && (values % size != 0 || width == 0 || width == own.most_nodes)) {
+      reading_.notes.push_back(fmt::format("{} is left out: {} factors do not fit the nodes of {} sides",
+                                           variable.name, values, size));
+      return;
     }
     set.factor_width = width;
-    set.factors_by_nodes = width == most;
-    const Values found =
-        chosen(pieces, reading_.values_at_once(), [&](std::size_t first, std::size_t count) -> Values {
-          if (variable.type == kFloat) return reading_.file.values(variable, {first}, {count});
-          return reading_.file.reals(variable, {first}, {count});
-        });
-    add_packed(set.in_mesh + std::string(kFactors), sides, found, pieces.lengths, width);
+    set.factors_by_nodes = by_nodes;
+    const auto piece_of = [&](std::size_t i) {
+      return by_nodes ? Piece{own.first_factors[i], own.nodes[i]}
+                      : Piece{Offset{own.places[i]} * width, width};
+    };
+    add_values(title(kind_, set.in_mesh) + std::string(kFactors), own, members, width, piece_of,
+               [&](std::size_t first, std::size_t count) -> Values {
+                 if (!is_sides_ || variable.type == kFloat)
+                   return reading_.file.values(variable, {first}, {count});
+                 return reading_.file.reals(variable, {first}, {count});
+               });
   }
 
-  // ---- variables
-
-  /// Reads all variables of a set; `add(values, name)` adds an array for one step and returns its name.
-  template <class Add>
-  void read_set_variables(std::size_t number, SetRecord& set, std::size_t size, const Pieces& pieces,
-                          const Add& add) {
+  /// Adds an array for each variable of a set and each step.
+  void read_set_variables(std::size_t number, SetRecord& set, std::size_t size, const Entries& own,
+                          const Members& members) {
     for (std::size_t v = 0; v < family_.variables.size(); ++v) {
       const Variable* const variable = reading_.take(name_of_values(v, number));
       if (variable == nullptr) continue;
@@ -466,10 +358,14 @@ class SetReader {
       series.type = variable->type;
       const std::string name = fmt::format("{} on {}", family_.variables[v], title(kind_, set.in_mesh));
       for (std::size_t step = 0; step < steps; ++step) {
-        Values values = chosen(pieces, reading_.values_at_once(), [&](std::size_t first, std::size_t count) {
-          return reading_.file.values(*variable, {step, first}, {1, count});
-        });
-        series.arrays.push_back(add(std::move(values), name_of_step(name, step, steps)));
+        series.arrays.push_back(add_values(
+            name_of_step(name, step, steps), own, members, 1,
+            [&](std::size_t i) {
+              return Piece{own.places[i], 1};
+            },
+            [&](std::size_t first, std::size_t count) {
+              return reading_.file.values(*variable, {step, first}, {1, count});
+            }));
       }
     }
   }
