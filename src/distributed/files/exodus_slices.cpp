@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/files/exodus_slices.hpp"
 
+#include "io/cell_division.hpp"
 #include "io/stream/file_path.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/vtk/vtk.hpp"

@@ -14,18 +14,47 @@
 // Writes the blocks of elements, with the names and attributes of each.
 
 namespace meshorder::exodus {
+namespace {
 
-void plan_blocks(Writing& writing, bool is_own) {
-  const CellDivision division = divide(writing.mesh);
+/// Returns the division of a mesh into blocks. Sets divide it only if it was read from another format.
+CellDivision divide(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const ExodusMetadata*>(mesh.format_metadata.get());
+  if (own == nullptr) return divide_cells(mesh, {.sets = true});
+  // if the file already has 64-bit ids, its kind of netCDF can hold them
+  const bool has_wide_labels =
+      std::any_of(own->blocks.begin(), own->blocks.end(),
+                  [](const BlockRecord& block) { return !std::in_range<std::int32_t>(block.label); });
+  return divide_cells(mesh, {.wide_labels = has_wide_labels});
+}
+
+}  // namespace
+
+Permutation places(const Mesh& mesh, std::vector<Index>& blocks) {
+  return places_by_division(divide(mesh), blocks);
+}
+
+std::string_view BlockPlan::type() const {
+  return record != nullptr && record->nodes > 0 ? record->type : type_of(cells.shape, cells.nodes);
+}
+
+const BlockPlan& Planning::block_of(Index cell) const {
+  const auto behind =
+      std::upper_bound(blocks.begin(), blocks.end(), cell,
+                       [](Index wanted, const BlockPlan& block) { return wanted < block.cells.first; });
+  return *(behind - 1);
+}
+
+void plan_blocks(Planning& planning, bool is_own) {
+  const CellDivision division = divide(planning.mesh);
   using Key = std::tuple<std::int64_t, Shape, int>;
   std::map<Key, const BlockRecord*> records;
   std::set<std::int64_t> ids;
-  for (const BlockRecord& record : writing.metadata.blocks) {
+  for (const BlockRecord& record : planning.metadata.blocks) {
     if (record.nodes > 0) records.emplace(Key{record.label, record.shape, record.nodes}, &record);
     ids.insert(record.id);
   }
   std::vector<BlockPlan> found;
-  for (Index c = 0; c < writing.mesh.cell_count(); ++c) {
+  for (Index c = 0; c < planning.mesh.cell_count(); ++c) {
     const Index key = division.key_of_cell[c];
     if (c == 0 || key != division.key_of_cell[c - 1]) {
       BlockPlan plan{division.keys[key]};
@@ -56,38 +85,40 @@ void plan_blocks(Writing& writing, bool is_own) {
   }
   // blocks of the file without elements stay before the next block that has elements
   std::size_t next = 0;
-  for (const BlockRecord& record : writing.metadata.blocks) {
+  for (const BlockRecord& record : planning.metadata.blocks) {
     const bool is_there = std::any_of(found.begin(), found.end(),
                                       [&](const BlockPlan& plan) { return plan.record == &record; });
     if (is_there) {
-      while (next < found.size() && found[next].record != &record) writing.blocks.push_back(found[next++]);
-      if (next < found.size()) writing.blocks.push_back(found[next++]);
+      while (next < found.size() && found[next].record != &record) planning.blocks.push_back(found[next++]);
+      if (next < found.size()) planning.blocks.push_back(found[next++]);
     } else {
-      const Index first = next < found.size() ? found[next].cells.first : writing.mesh.cell_count();
-      BlockPlan empty{Block{.first = first, .label = record.label}, &record, record.id, record.name};
-      writing.blocks.push_back(std::move(empty));
+      const Index first = next < found.size() ? found[next].cells.first : planning.mesh.cell_count();
+      BlockPlan empty{CellPart{.first = first, .label = record.label}, &record, record.id, record.name};
+      planning.blocks.push_back(std::move(empty));
     }
   }
-  while (next < found.size()) writing.blocks.push_back(found[next++]);
-  if (division.by_labels || (is_own && find_array(writing.mesh, kLabel, Association::cells) == nullptr)) {
-    writing.placed.insert(label_array(writing.mesh, Association::cells));
+  while (next < found.size()) planning.blocks.push_back(found[next++]);
+  if (division.by_labels || (is_own && find_array(planning.mesh, kLabel, Association::cells) == nullptr)) {
+    planning.placed.insert(label_array(planning.mesh, Association::cells));
   }
 }
 
-std::vector<const EntitySet*> name_blocks(Writing& writing) {
-  const auto& own_sets = writing.metadata.sets[kElementSets].sets;
+std::vector<const EntitySet*> name_blocks(Planning& planning) {
+  const auto& own_sets = planning.metadata.sets[kElementSets].sets;
   std::vector<const EntitySet*> others;
-  for (const EntitySet& set : writing.mesh.sets) {
+  for (const EntitySet& set : planning.mesh.sets) {
     if (set.association != Association::cells) continue;
     const bool is_element_set = std::any_of(own_sets.begin(), own_sets.end(), [&](const SetRecord& record) {
       return record.in_mesh == set.name;
     });
-    const auto block = std::find_if(writing.blocks.begin(), writing.blocks.end(), [&](const BlockPlan& plan) {
-      return !set.members.empty() && set.members.front() >= plan.cells.first &&
-             set.members.front() < plan.cells.first + plan.cells.count;
-    });
-    const bool names_block = !is_element_set && !trimmed(set.name).empty() && block != writing.blocks.end() &&
-                             block->name.empty() && index_size(set.members) == block->cells.count &&
+    const auto block =
+        std::find_if(planning.blocks.begin(), planning.blocks.end(), [&](const BlockPlan& plan) {
+          return !set.members.empty() && set.members.front() >= plan.cells.first &&
+                 set.members.front() < plan.cells.first + plan.cells.count;
+        });
+    const bool names_block = !is_element_set && !trimmed(set.name).empty() &&
+                             block != planning.blocks.end() && block->name.empty() &&
+                             index_size(set.members) == block->cells.count &&
                              std::all_of(set.members.begin(), set.members.end(), [&](Index c) {
                                return c >= block->cells.first && c < block->cells.first + block->cells.count;
                              });
@@ -101,32 +132,33 @@ std::vector<const EntitySet*> name_blocks(Writing& writing) {
   return others;
 }
 
-Columns attributes_of(Writing& writing, const BlockPlan& block) {
+namespace {
+
+/// Returns the values of an attribute for the elements of a block; `missing` for elements without a value.
+std::vector<double> values_in(const Mesh& mesh, const CellPart& block, const DataArray& array,
+                              double missing) {
+  return column(array, 0, rows_by_item(array, mesh.cell_count()), block.first, block.count, missing);
+}
+
+}  // namespace
+
+Columns attributes_of(Planning& planning, const BlockPlan& block) {
   Columns columns;
   if (block.record != nullptr) {
     for (const auto& [name, array] : block.record->attributes) {
-      if (const DataArray* const found = writing.take_column(array, Association::cells))
+      if (const DataArray* const found = planning.take_column(array, Association::cells))
         columns.emplace_back(name, found);
     }
     return columns;
   }
-  for (const DataArray& array : writing.mesh.data) {
+  for (const DataArray& array : planning.mesh.data) {
     const bool named = array.association == Association::cells && array.name.starts_with(kAttribute) &&
-                       array.components == 1 &&
-                       !std::holds_alternative<std::vector<std::string>>(array.values);
+                       array.components == 1 && !are_texts(array.values);
     if (!named) continue;
-    writing.placed.insert(&array);
-    const std::vector<Index> table = rows_by_item(array, writing.mesh.cell_count());
-    bool has_values = false;
-    std::visit(
-        [&](const auto& values) {
-          for (Index c = block.cells.first; c < block.cells.first + block.cells.count && !has_values; ++c) {
-            const Index row = table.empty() ? c : table[c];
-            has_values = row >= 0 && !std::isnan(number_as<double>(values[row]));
-          }
-        },
-        array.values);
-    if (has_values) columns.emplace_back(array.name.substr(kAttribute.size()), &array);
+    planning.placed.insert(&array);
+    const std::vector<double> values = values_in(planning.mesh, block.cells, array, std::nan(""));
+    if (std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); }))
+      columns.emplace_back(array.name.substr(kAttribute.size()), &array);
   }
   return columns;
 }
@@ -134,7 +166,7 @@ Columns attributes_of(Writing& writing, const BlockPlan& block) {
 namespace {
 
 /// Returns the numbers of the nodes of `count` elements of a block, from 1, in the order of the file.
-std::vector<std::int32_t> connectivity(const Mesh& mesh, const Block& block, Index first, Index count) {
+std::vector<std::int32_t> connectivity(const Mesh& mesh, const CellPart& block, Index first, Index count) {
   const auto nodes = static_cast<std::size_t>(block.nodes);
   std::vector<std::int32_t> result(static_cast<std::size_t>(count) * nodes);
   const std::span<const int> order = file_order(block.shape, block.nodes);
@@ -151,33 +183,16 @@ std::vector<std::int32_t> connectivity(const Mesh& mesh, const Block& block, Ind
   return result;
 }
 
-/// Returns the values of an attribute for the elements of a block, 0 for elements without a value.
-std::vector<double> values_in(const Mesh& mesh, const Block& block, const DataArray& array) {
-  return column<double>(array, 0, rows_by_item(array, mesh.cell_count()), block.first, block.count, 0);
-}
-
 void write_attributes(Writing& writing, const std::string& number, const BlockPlan& block,
                       const Columns& columns) {
   if (columns.empty()) return;
-  NcOutput& file = writing.file;
   const std::string count = "num_att_in_blk" + number;
-  file.dimension({count, columns.size()});
   const bool is_single = block.record != nullptr && block.record->attribute_type == kFloat &&
                          std::all_of(columns.begin(), columns.end(), [&](const auto& column) {
-                           return can_hold(kFloat, values_in(writing.mesh, block.cells, *column.second));
+                           return can_hold(kFloat, values_in(writing.mesh, block.cells, *column.second, 0));
                          });
-  const NcType type = is_single ? kFloat : kDouble;
-  const NcSink sink = writing.declare("attrib" + number, type, {"num_el_in_blk" + number, count});
-  file.later([sink, columns, &writing, cells = block.cells] {
-    const std::size_t width = columns.size();
-    const auto rows = static_cast<std::size_t>(cells.count);
-    std::vector<double> table(rows * width, 0);
-    for (std::size_t k = 0; k < width; ++k) {
-      const std::vector<double> values = values_in(writing.mesh, cells, *columns[k].second);
-      for (std::size_t e = 0; e < rows; ++e) table[e * width + k] = values[e];
-    }
-    sink.part({0, 0}, {rows, width}, table);
-  });
+  write_columns(writing, "attrib" + number, is_single ? kFloat : kDouble, {"num_el_in_blk" + number, count},
+                columns, block.cells.first, block.cells.count);
   if (block.record == nullptr || block.record->names_attributes)
     writing.write_names("attrib_name" + number, count, names_of(columns));
 }
@@ -189,11 +204,9 @@ void write_elements(Writing& writing, const std::string& number, const BlockPlan
   const std::string nodes = "num_nod_per_el" + number;
   file.dimension({elements, static_cast<std::size_t>(block.cells.count)});
   file.dimension({nodes, static_cast<std::size_t>(block.cells.nodes)});
-  std::string type(type_of(block.cells.shape, block.cells.nodes));
-  if (block.record != nullptr && block.record->nodes > 0) type = block.record->type;
   const bool wide = block.record != nullptr && block.record->connect_type == kInt64;
   const NcSink sink = writing.declare("connect" + number, wide ? kInt64 : kInt, {elements, nodes},
-                                      {text_attribute("elem_type", type)});
+                                      {text_attribute("elem_type", std::string(block.type()))});
   file.later([sink, &mesh, cells = block.cells] {
     in_parts(cells.count, [&](Index first, Index count) {
       sink.part({static_cast<std::size_t>(first), 0},
@@ -206,21 +219,13 @@ void write_elements(Writing& writing, const std::string& number, const BlockPlan
 }  // namespace
 
 void write_blocks(Writing& writing, const std::vector<Columns>& attributes) {
-  const std::string count = "num_el_blk";
-  const std::vector<std::string> names =
-      write_plans(writing, "eb", count, writing.blocks, writing.metadata.block_properties,
-                  [](const BlockPlan& block) { return block.cells.count > 0; });
   std::vector<std::int64_t> labels;
   for (const BlockPlan& block : writing.blocks) labels.push_back(block.cells.label);
-  const bool ids_are_labels = std::all_of(writing.blocks.begin(), writing.blocks.end(),
-                                          [](const auto& block) { return block.cells.label == block.id; });
-  if (!ids_are_labels) {
-    writing.write_integers(fmt::format("eb_prop{}", writing.metadata.block_properties.size() + 2), count,
-                           labels, {text_attribute("name", std::string(kLabelProperty))});
-  }
-  const bool named =
-      std::any_of(names.begin(), names.end(), [](const std::string& name) { return !name.empty(); });
-  if (named || writing.metadata.names_blocks) writing.write_names("eb_names", count, names);
+  if (std::all_of(writing.blocks.begin(), writing.blocks.end(),
+                  [](const BlockPlan& block) { return block.cells.label == block.id; }))
+    labels.clear();
+  write_plans(writing, "eb", "num_el_blk", writing.blocks, writing.metadata.block_properties,
+              writing.metadata.names_blocks, labels);
   for (std::size_t b = 0; b < writing.blocks.size(); ++b) {
     if (writing.blocks[b].cells.count == 0) continue;
     write_elements(writing, std::to_string(b + 1), writing.blocks[b]);

@@ -17,7 +17,6 @@
 // - A variable becomes an array NAME, or arrays "NAME step K" if there are several steps. A variable on a set
 //   becomes, for example, "NAME on node set SET".
 
-#include "io/cell_division.hpp"
 #include "io/exodus/netcdf.hpp"
 #include "io/format.hpp"
 #include "io/mesh_part.hpp"
@@ -29,7 +28,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -220,28 +218,6 @@ enum class PartContent : std::uint8_t { points_and_cells, all };
 ///               `note_of_number_twice`
 /// @throws InputError as `read`, for faults of the part, and for coordinates that are not finite
 MeshPart read_part(const FilePath& path, const MeshRanges& ranges, PartContent content, Notes& notes);
-
-// ---- blocks of a mesh
-
-using Block = CellPart;
-
-/// Returns the division of a mesh into blocks. Sets divide it only if it was read from another format.
-CellDivision divide(const Mesh& mesh);
-
-/// Returns the number of nodes of sides of cells; it depends on the element type of a cell's block.
-class SideNodes {
- public:
-  /// @param metadata  gives the types of blocks; `mesh` must outlive this object. O(cells)
-  SideNodes(const Mesh& mesh, const ExodusMetadata& metadata);
-
-  /// Returns the number of nodes of side `side`, counted from 1; 0 if there is no such side. O(log blocks).
-  [[nodiscard]] int count(Index cell, int side) const;
-
- private:
-  const Mesh& mesh_;
-  std::vector<std::int64_t> labels_;                                   ///< of the cells; empty if all are 0
-  std::map<std::tuple<std::int64_t, Shape, int>, std::string> types_;  ///< by label, shape and nodes
-};
 
 /// Returns the places of cells block by block, cells of the highest dimension first; `blocks` receives the
 /// first cell of each block.

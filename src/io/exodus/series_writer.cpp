@@ -16,24 +16,38 @@
 namespace meshorder::exodus {
 namespace {
 
-/// Writes the values of one step for `count` vertices or cells from `first` on, along the last dimension of
-/// the variable. If `array` is null, writes NaN, or 0 for integer types.
-void put(const NcSink& sink, NcType type, std::vector<std::size_t> starts, const DataArray* array,
-         Index component, const std::vector<Index>& table, Index first, Index count) {
-  std::vector<std::size_t> counts(starts.size(), 1);
-  const auto put_as = [&]<class Number>(Number nothing) {
-    in_parts(count, [&](Index begin, Index rows) {
-      starts.back() = static_cast<std::size_t>(begin);
-      counts.back() = static_cast<std::size_t>(rows);
-      sink.part(starts, counts,
-                array == nullptr ? std::vector<Number>(static_cast<std::size_t>(rows), nothing)
-                                 : column<Number>(*array, component, table, first + begin, rows, nothing));
-    });
-  };
-  if (type == kFloat) return put_as(std::numeric_limits<float>::quiet_NaN());
-  const bool is_wide = array != nullptr && std::holds_alternative<std::vector<std::uint64_t>>(array->values);
-  if (is_whole(type)) return is_wide ? put_as(std::uint64_t{0}) : put_as(std::int64_t{0});
-  put_as(std::numeric_limits<double>::quiet_NaN());
+/// Vertices or cells whose values are in one netCDF variable.
+struct Target {
+  NcSink sink;
+  std::vector<std::size_t> starts;  ///< of their values in the variable, at the first step
+  Index first;
+  Index count;
+};
+
+/// Writes the values of a variable of nodes or elements at all steps, along the last dimension of each
+/// target.
+void put_steps(const SeriesPlan& series, Index items, std::vector<Target> targets) {
+  const DataArray* last = nullptr;
+  std::vector<Index> table;
+  for (std::size_t step = 0; step < series.arrays.size(); ++step) {
+    const DataArray* const array = series.arrays[step];
+    if (array != nullptr && array != last) table = rows_by_item(*array, items);
+    last = array;
+    for (Target& target : targets) {
+      std::vector<std::size_t> counts(target.starts.size(), 1);
+      target.starts.front() = step;
+      put_as(series.type, array, [&]<class Number>(Number missing) {
+        in_parts(target.count, [&](Index begin, Index rows) {
+          target.starts.back() = static_cast<std::size_t>(begin);
+          counts.back() = static_cast<std::size_t>(rows);
+          target.sink.part(target.starts, counts,
+                           array == nullptr ? std::vector<Number>(counts.back(), missing)
+                                            : column(*array, series.component, table, target.first + begin,
+                                                     rows, missing));
+        });
+      });
+    }
+  }
 }
 
 /// Returns the type in which an array is written if it did not come from an Exodus file.
@@ -57,15 +71,16 @@ std::vector<std::string> names_of_components(const DataArray& array) {
 
 class SeriesPlanner {
  public:
-  SeriesPlanner(Writing& writing, Association association) : writing_(writing), association_(association) {}
+  SeriesPlanner(Planning& planning, Association association)
+      : planning_(planning), association_(association) {}
 
   std::vector<SeriesPlan> plans() && {
-    const ExodusMetadata& of_file = writing_.metadata;
+    const ExodusMetadata& of_file = planning_.metadata;
     for (const Series& series : association_ == Association::vertices ? of_file.nodal : of_file.elements) {
       add(series);
     }
-    for (const DataArray& array : writing_.mesh.data) {
-      if (array.association == association_ && !writing_.placed.contains(&array)) add(array);
+    for (const DataArray& array : planning_.mesh.data) {
+      if (array.association == association_ && !planning_.placed.contains(&array)) add(array);
     }
     return std::move(plans_);
   }
@@ -76,7 +91,7 @@ class SeriesPlanner {
         .name = series.name, .type = series.type, .present = series.present, .declared = series.declared};
     bool found = series.arrays.empty();
     for (const std::string& name : series.arrays) {
-      plan.arrays.push_back(writing_.take_column(name, association_));
+      plan.arrays.push_back(planning_.take_column(name, association_));
       const DataArray* const array = plan.arrays.back();
       found = found || array != nullptr;
       if (array != nullptr) plan.type = written_type(plan.type, array->values);
@@ -88,8 +103,8 @@ class SeriesPlanner {
   }
 
   void add(const DataArray& array) {
-    Notes& notes = writing_.notes;
-    if (std::holds_alternative<std::vector<std::string>>(array.values)) {
+    Notes& notes = planning_.notes;
+    if (are_texts(array.values)) {
       return note_array_unsupported(array, "Exodus", notes);
     }
     note_digits(&array, kDouble);
@@ -102,7 +117,7 @@ class SeriesPlanner {
 
   void note_digits(const DataArray* array, NcType type) {
     if (array == nullptr || can_hold(type, array->values)) return;
-    writing_.notes.push_back(fmt::format(
+    planning_.notes.push_back(fmt::format(
         "the array '{}' loses digits: variables of Exodus are real numbers of 53 bits", array->name));
   }
 
@@ -112,11 +127,11 @@ class SeriesPlanner {
         held, [&](int k) { return fmt::format("{} ({})", held, k); },
         [&](const std::string& free) { return names_.insert(free).second; });
     if (name != wanted) {
-      writing_.notes.push_back(fmt::format("the array '{}' is written as the variable '{}'", wanted, name));
+      planning_.notes.push_back(fmt::format("the array '{}' is written as the variable '{}'", wanted, name));
     }
-    const std::size_t steps = std::max<std::size_t>(1, writing_.metadata.steps);
+    const std::size_t steps = std::max<std::size_t>(1, planning_.metadata.steps);
     if (steps > 1) {
-      writing_.notes.push_back(
+      planning_.notes.push_back(
           fmt::format("the variable '{}' has the same values in all {} steps", name, steps));
     }
     plans_.push_back({.name = name,
@@ -125,7 +140,7 @@ class SeriesPlanner {
                       .component = component});
   }
 
-  Writing& writing_;
+  Planning& planning_;
   Association association_;
   std::set<std::string> names_;
   NameNumbers numbers_;
@@ -150,17 +165,9 @@ NcType type_of_all(const std::vector<SeriesPlan>& series) {
 /// Returns, for each block, the number of cells for which an array has a row.
 std::vector<Index> rows_in_blocks(const Writing& writing, const DataArray& array) {
   std::vector<Index> rows;
-  std::vector<Index> firsts;
-  for (const BlockPlan& block : writing.blocks) {
-    rows.push_back(array.is_dense() ? block.cells.count : 0);
-    firsts.push_back(block.cells.first);
-  }
-  for (const Index cell : array.indices) {
-    // an empty block has the same first cell as the next block, so the last block with that first cell has
-    // the cell
-    const auto next = std::upper_bound(firsts.begin(), firsts.end(), cell);
-    ++rows[static_cast<std::size_t>(next - firsts.begin()) - 1];
-  }
+  for (const BlockPlan& block : writing.blocks) rows.push_back(array.is_dense() ? block.cells.count : 0);
+  for (const Index cell : array.indices)
+    ++rows[static_cast<std::size_t>(&writing.block_of(cell) - writing.blocks.data())];
   return rows;
 }
 
@@ -199,8 +206,8 @@ std::vector<Presence> presence(Writing& writing, const SeriesPlan& series) {
 
 }  // namespace
 
-std::vector<SeriesPlan> plan_series(Writing& writing, Association association) {
-  return SeriesPlanner(writing, association).plans();
+std::vector<SeriesPlan> plan_series(Planning& planning, Association association) {
+  return SeriesPlanner(planning, association).plans();
 }
 
 void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series) {
@@ -223,16 +230,10 @@ void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series) {
     const NcSink sink =
         packed ? together
                : writing.declare(fmt::format("vals_nod_var{}", v + 1), one.type, {"time_step", "num_nodes"});
-    file.later([sink, &one, &mesh, v, packed] {
-      const DataArray* last = nullptr;
-      std::vector<Index> table;
-      for (std::size_t step = 0; step < one.arrays.size(); ++step) {
-        const DataArray* const array = one.arrays[step];
-        if (array != nullptr && array != last) table = rows_by_item(*array, mesh.vertex_count());
-        last = array;
-        put(sink, one.type, packed ? std::vector{step, v, std::size_t{0}} : std::vector{step, std::size_t{0}},
-            array, one.component, table, 0, mesh.vertex_count());
-      }
+    const std::vector<std::size_t> starts =
+        packed ? std::vector{std::size_t{0}, v, std::size_t{0}} : std::vector<std::size_t>(2, 0);
+    file.later([sink, starts, &one, nodes = mesh.vertex_count()] {
+      put_steps(one, nodes, {{sink, starts, 0, nodes}});
     });
   }
 }
@@ -246,26 +247,16 @@ void write_elemental(Writing& writing, const std::vector<SeriesPlan>& series) {
   for (std::size_t v = 0; v < series.size(); ++v) {
     const SeriesPlan& one = series[v];
     const std::vector<Presence> presences = presence(writing, one);
-    std::vector<std::pair<std::size_t, NcSink>> sinks;
+    std::vector<Target> targets;
     for (std::size_t b = 0; b < writing.blocks.size(); ++b) {
       table[b * series.size() + v] = presences[b].in_table ? 1 : 0;
-      if (!presences[b].declared || writing.blocks[b].cells.count == 0) continue;
-      sinks.emplace_back(b, writing.declare(fmt::format("vals_elem_var{}eb{}", v + 1, b + 1), one.type,
-                                            {"time_step", fmt::format("num_el_in_blk{}", b + 1)}));
+      const CellPart& cells = writing.blocks[b].cells;
+      if (!presences[b].declared || cells.count == 0) continue;
+      const NcSink sink = writing.declare(fmt::format("vals_elem_var{}eb{}", v + 1, b + 1), one.type,
+                                          {"time_step", fmt::format("num_el_in_blk{}", b + 1)});
+      targets.push_back({sink, {0, 0}, cells.first, cells.count});
     }
-    file.later([sinks, &one, &writing] {
-      const DataArray* last = nullptr;
-      std::vector<Index> rows;
-      for (std::size_t step = 0; step < one.arrays.size(); ++step) {
-        const DataArray* const array = one.arrays[step];
-        if (array != nullptr && array != last) rows = rows_by_item(*array, writing.mesh.cell_count());
-        last = array;
-        for (const auto& [b, sink] : sinks) {
-          const Block& cells = writing.blocks[b].cells;
-          put(sink, one.type, {step, 0}, array, one.component, rows, cells.first, cells.count);
-        }
-      }
-    });
+    file.later([targets, &one, items = writing.mesh.cell_count()] { put_steps(one, items, targets); });
   }
   const NcSink sink = writing.declare("elem_var_tab", kInt, {"num_el_blk", "num_elem_var"});
   file.later([sink, table, blocks = writing.blocks.size(), variables = series.size()] {

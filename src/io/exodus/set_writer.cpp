@@ -7,8 +7,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
-#include <optional>
+#include <numeric>
 #include <utility>
 
 // Writes the sets of nodes, sides and elements.
@@ -58,8 +57,8 @@ bool is_side_set(const DataArray& array) {
 /// Plans the sets of one kind.
 class FamilyPlanner {
  public:
-  FamilyPlanner(Writing& writing, std::size_t kind)
-      : writing_(writing), kind_(kSetKinds[kind]), family_(writing.metadata.sets[kind]) {}
+  FamilyPlanner(Planning& planning, std::size_t kind)
+      : planning_(planning), kind_(kSetKinds[kind]), family_(planning.metadata.sets[kind]) {}
 
   void add(const EntitySet& set) {
     SetPlan& plan = begin(set.name);
@@ -67,11 +66,11 @@ class FamilyPlanner {
     for (const Index member : set.members) plan.members.push_back(member + 1);
     plan.factors = find_factors(set.name);
     if (plan.factors != nullptr && plan.factors->components != 1) plan.factors = nullptr;
-    if (plan.factors != nullptr) writing_.placed.insert(plan.factors);
+    if (plan.factors != nullptr) planning_.placed.insert(plan.factors);
   }
 
   void add(const DataArray& array) {
-    writing_.placed.insert(&array);
+    planning_.placed.insert(&array);
     SetPlan& plan = begin(array.name);
     const std::vector<std::int64_t> masks = whole_values(array.values);
     for (Index row = 0; row < index_size(masks); ++row) {
@@ -100,9 +99,8 @@ class FamilyPlanner {
     }
     for (SetPlan& plan : plans_) {
       if (plan.record != nullptr) continue;
-      while (plan.id < 1 || !taken.insert(plan.id).second) {
+      while (plan.id < 1 || !taken.insert(plan.id).second)
         plan.id = taken.empty() ? 1 : std::max<std::int64_t>(1, *taken.rbegin() + 1);
-      }
     }
     return std::move(plans_);
   }
@@ -124,7 +122,7 @@ class FamilyPlanner {
     plan.name = has_word ? in_mesh.substr(kind_.word.size()) : in_mesh;
     if (trimmed(plan.name).empty()) {
       plan.name = "unnamed";
-      writing_.notes.push_back(fmt::format("the set '{}' is written as '{}'", in_mesh, plan.name));
+      planning_.notes.push_back(fmt::format("the set '{}' is written as '{}'", in_mesh, plan.name));
     }
     plan.id = has_word ? number_of(plan.name) : -1;
     if (plan.id >= 0) plan.name.clear();
@@ -136,17 +134,16 @@ class FamilyPlanner {
     for (std::size_t v = 0; v < plan.record->variables.size(); ++v) {
       for (const std::string& array : plan.record->variables[v].arrays) {
         // a side set's array has a component for each side of a cell
-        plan.variables[v].push_back(is_sides ? writing_.take(array, kind_.association)
-                                             : writing_.take_column(array, kind_.association));
+        plan.variables[v].push_back(is_sides ? planning_.take(array, kind_.association)
+                                             : planning_.take_column(array, kind_.association));
       }
     }
   }
 
   [[nodiscard]] const DataArray* find_factors(const std::string& in_mesh) const {
     const DataArray* const found =
-        find_array(writing_.mesh, title(kind_, in_mesh) + std::string(kFactors), kind_.association);
-    const bool usable = found != nullptr && !std::holds_alternative<std::vector<std::string>>(found->values);
-    return usable ? found : nullptr;
+        find_array(planning_.mesh, title(kind_, in_mesh) + std::string(kFactors), kind_.association);
+    return found == nullptr || are_texts(found->values) ? nullptr : found;
   }
 
   /// Finds the array of factors of a side set, and the number of factors of each side.
@@ -155,9 +152,12 @@ class FamilyPlanner {
     if (factors == nullptr || plan.members.empty()) return;
     std::vector<int> counts;
     counts.reserve(plan.members.size());
-    if (!nodes_) nodes_.emplace(writing_.mesh, writing_.metadata);
-    for (std::size_t i = 0; i < plan.members.size(); ++i)
-      counts.push_back(nodes_->count(plan.members[i] - 1, plan.sides[i]));
+    for (std::size_t i = 0; i < plan.members.size(); ++i) {
+      const BlockPlan& block = planning_.block_of(plan.members[i] - 1);
+      const CellPart& cells = block.cells;
+      const int faces = faces_of(cells.shape, block.type(), planning_.mesh.dimension);
+      counts.push_back(nodes_of_side(cells.shape, cells.nodes, plan.sides[i], faces));
+    }
     const int most_nodes = *std::max_element(counts.begin(), counts.end());
     const Index most_sides = *std::max_element(plan.ranks.begin(), plan.ranks.end()) + 1;
     int width = 0;
@@ -174,14 +174,13 @@ class FamilyPlanner {
     plan.factors = factors;
     plan.factor_width = width;
     plan.factor_counts = std::move(counts);
-    writing_.placed.insert(factors);
+    planning_.placed.insert(factors);
   }
 
-  Writing& writing_;
+  Planning& planning_;
   const SetKind& kind_;
   const SetFamily& family_;
   std::vector<SetPlan> plans_;
-  std::optional<SideNodes> nodes_;  ///< made when the first side set with factors is added
 };
 
 /// Returns the values of an array for the members of a set: counts[i] values for member i, or one value if
@@ -192,23 +191,17 @@ std::vector<Number> values_of_members(const SetPlan& plan, const DataArray& arra
   const SparseRows rows(array);
   std::vector<Number> result;
   result.reserve(plan.members.size());
-  std::visit(
-      [&](const auto& values) {
-        for (std::size_t i = 0; i < plan.members.size(); ++i) {
-          const Index row = rows.find(plan.members[i] - 1);
-          const Index rank = plan.ranks.empty() ? 0 : plan.ranks[i];
-          const int count = counts.empty() ? 1 : counts[i];
-          for (int k = 0; k < count; ++k) {
-            const Offset column = Offset{rank} * width + k;
-            const bool there = row >= 0 && column < array.components;
-            result.push_back(
-                there ? number_as<Number>(
-                            values[static_cast<std::size_t>(Offset{row} * array.components + column)])
-                      : missing);
-          }
-        }
-      },
-      array.values);
+  with_numbers(array.values, [&](const auto& values) {
+    for (std::size_t i = 0; i < plan.members.size(); ++i) {
+      const Index row = rows.find(plan.members[i] - 1);
+      const Offset first = plan.ranks.empty() ? 0 : Offset{plan.ranks[i]} * width;
+      const Offset end = first + (counts.empty() ? 1 : counts[i]);
+      for (Offset k = first; k < end; ++k) {
+        const bool there = row >= 0 && k < array.components;
+        result.push_back(there ? static_cast<Number>(values[Offset{row} * array.components + k]) : missing);
+      }
+    }
+  });
   return result;
 }
 
@@ -220,15 +213,9 @@ class FamilyWriter {
 
   void write() {
     if (plans_.empty()) return;
-    const std::string prefix(kind_.prefix);
     const std::string count(kind_.count);
     writing_.file.dimension({count, plans_.size()});
-    const std::vector<std::string> names =
-        write_plans(writing_, prefix, count, plans_, family_.properties,
-                    [](const SetPlan& plan) { return !plan.members.empty(); });
-    const bool named =
-        std::any_of(names.begin(), names.end(), [](const std::string& name) { return !name.empty(); });
-    if (named || family_.has_names) writing_.write_names(prefix + "_names", count, names);
+    write_plans(writing_, std::string(kind_.prefix), count, plans_, family_.properties, family_.has_names);
     for (std::size_t s = 0; s < plans_.size(); ++s) write_set(std::to_string(s + 1), plans_[s]);
     write_variables();
   }
@@ -247,13 +234,8 @@ class FamilyWriter {
       file.later([sides, &plan] { sides.list(plan.sides); });
     }
     if (plan.factors == nullptr) return;
-    std::size_t factors = plan.members.size();
-    if (!plan.factor_counts.empty()) {
-      factors = 0;
-      for (const int count : plan.factor_counts) factors += static_cast<std::size_t>(count);
-    }
     const std::string factor_size = std::string(kind_.factor_size) + number;
-    file.dimension({factor_size, factors});
+    file.dimension({factor_size, plan.factor_count()});
     const NcType of_factors =
         plan.record != nullptr ? written_type(plan.record->factor_type, plan.factors->values) : kDouble;
     const NcSink sink =
@@ -315,22 +297,16 @@ class FamilyWriter {
     const NcSink sink =
         writing_.declare(fmt::format("vals_{}_var{}{}{}", kind_.variable, v + 1, kind_.prefix, number), type,
                          {"time_step", std::string(kind_.size) + number});
-    const auto put_as = [sink, &plan, v]<class Number>(Number nothing) {
+    writing_.file.later([sink, type, &plan, v] {
+      const std::size_t members = plan.members.size();
       for (std::size_t step = 0; step < plan.variables[v].size(); ++step) {
         const DataArray* const array = plan.variables[v][step];
-        const std::size_t members = plan.members.size();
-        sink.part({step, 0}, {1, members},
-                  array == nullptr ? std::vector<Number>(members, nothing)
-                                   : values_of_members(plan, *array, 1, {}, nothing));
-      }
-    };
-    const bool is_wide =
-        std::any_of(plan.variables[v].begin(), plan.variables[v].end(), [](const DataArray* array) {
-          return array != nullptr && std::holds_alternative<std::vector<std::uint64_t>>(array->values);
+        put_as(type, array, [&]<class Number>(Number missing) {
+          sink.part({step, 0}, {1, members},
+                    array == nullptr ? std::vector<Number>(members, missing)
+                                     : values_of_members(plan, *array, 1, {}, missing));
         });
-    writing_.file.later([put_as, type, is_wide] {
-      if (is_whole(type)) return is_wide ? put_as(std::uint64_t{0}) : put_as(std::int64_t{0});
-      put_as(std::numeric_limits<double>::quiet_NaN());
+      }
     });
   }
 
@@ -342,25 +318,31 @@ class FamilyWriter {
 
 }  // namespace
 
-std::vector<std::vector<SetPlan>> plan_sets(Writing& writing,
+std::size_t SetPlan::factor_count() const {
+  if (factors == nullptr) return 0;
+  return factor_counts.empty() ? members.size()
+                               : std::accumulate(factor_counts.begin(), factor_counts.end(), std::size_t{0});
+}
+
+std::vector<std::vector<SetPlan>> plan_sets(Planning& planning,
                                             const std::vector<const EntitySet*>& element_sets) {
-  FamilyPlanner nodes(writing, kNodeSets);
-  FamilyPlanner sides(writing, kSideSets);
-  FamilyPlanner elements(writing, kElementSets);
-  for (const EntitySet& set : writing.mesh.sets) {
+  FamilyPlanner nodes(planning, kNodeSets);
+  FamilyPlanner sides(planning, kSideSets);
+  FamilyPlanner elements(planning, kElementSets);
+  for (const EntitySet& set : planning.mesh.sets) {
     if (set.association == Association::vertices) nodes.add(set);
   }
   for (const EntitySet* const set : element_sets) elements.add(*set);
-  for (const SetRecord& record : writing.metadata.sets[kSideSets].sets) {
-    const DataArray* const array = find_array(writing.mesh, record.in_mesh, Association::cells);
+  for (const SetRecord& record : planning.metadata.sets[kSideSets].sets) {
+    const DataArray* const array = find_array(planning.mesh, record.in_mesh, Association::cells);
     if (record.in_mesh.empty()) {
       sides.add_empty(record);
     } else if (array != nullptr && is_side_set(*array)) {
       sides.add(*array);
     }
   }
-  for (const DataArray& array : writing.mesh.data) {
-    if (!writing.placed.contains(&array) && is_side_set(array)) sides.add(array);
+  for (const DataArray& array : planning.mesh.data) {
+    if (!planning.placed.contains(&array) && is_side_set(array)) sides.add(array);
   }
   return {std::move(nodes).plans(), std::move(sides).plans(), std::move(elements).plans()};
 }

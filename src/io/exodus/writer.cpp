@@ -31,14 +31,14 @@ std::string held_name(const std::string& name) {
 
 }  // namespace
 
-const DataArray* Writing::take(std::string_view name, Association association) {
+const DataArray* Planning::take(std::string_view name, Association association) {
   const DataArray* const array = name.empty() ? nullptr : find_array(mesh, name, association);
-  if (array == nullptr || std::holds_alternative<std::vector<std::string>>(array->values)) return nullptr;
+  if (array == nullptr || are_texts(array->values)) return nullptr;
   placed.insert(array);
   return array;
 }
 
-const DataArray* Writing::take_column(std::string_view name, Association association) {
+const DataArray* Planning::take_column(std::string_view name, Association association) {
   const DataArray* const array = name.empty() ? nullptr : find_array(mesh, name, association);
   return array != nullptr && array->components == 1 ? take(name, association) : nullptr;
 }
@@ -70,33 +70,40 @@ void Writing::write_integers(const std::string& variable, const std::string& dim
   file.later([sink, values = std::move(values)] { sink.list(values); });
 }
 
+void write_columns(Writing& writing, const std::string& variable, NcType type,
+                   const std::vector<std::string>& dimensions, const Columns& columns, Index first,
+                   Index count) {
+  const std::size_t width = columns.size();
+  writing.file.dimension({dimensions.back(), width});
+  const NcSink sink = writing.declare(variable, type, dimensions);
+  writing.file.later([sink, columns, first, count, width, &mesh = writing.mesh] {
+    std::vector<double> table(static_cast<std::size_t>(count) * width);
+    for (std::size_t k = 0; k < width; ++k) {
+      const DataArray& array = *columns[k].second;
+      const std::vector<double> values =
+          column(array, 0, rows_by_item(array, item_count(mesh, array.association)), first, count, 0.0);
+      for (std::size_t i = 0; i < values.size(); ++i) table[i * width + k] = values[i];
+    }
+    sink.part({0, 0}, {static_cast<std::size_t>(count), width}, table);
+  });
+}
+
 NcType written_type(NcType of_file, const Values& values) {
   return can_hold(of_file, values) ? of_file : kDouble;
 }
 
 bool are_whole(const Values& values) {
-  return std::visit(
-      [](const auto& all) {
-        using Number = typename std::decay_t<decltype(all)>::value_type;
-        if constexpr (std::is_floating_point_v<Number>) {
-          return std::all_of(all.begin(), all.end(), [](Number value) {
-            return value == std::trunc(value) && std::abs(value) <= Number{4503599627370496.0};  // 2^52
-          });
-        }
-        return std::is_integral_v<Number>;
-      },
-      values);
+  constexpr double kMost = 4503599627370496;  // 2^52
+  return are_integers(values) || with_numbers(values, [](const auto& all) {
+           return std::all_of(all.begin(), all.end(), [](double value) {
+             return value == std::trunc(value) && std::abs(value) <= kMost;
+           });
+         });
 }
 
 std::vector<std::int64_t> whole_values(const Values& values) {
-  return std::visit(
-      [](const auto& all) {
-        std::vector<std::int64_t> result;
-        result.reserve(all.size());
-        for (const auto& value : all) result.push_back(number_as<std::int64_t>(value));
-        return result;
-      },
-      values);
+  return with_numbers(values,
+                      [](const auto& all) { return std::vector<std::int64_t>(all.begin(), all.end()); });
 }
 
 namespace {
@@ -231,8 +238,7 @@ void write_maps(Writing& writing, const std::string& of, const std::string& pref
 
 /// Returns whether nodal attributes can hold an array: a number for each vertex.
 bool fits_nodal_attribute(const DataArray& array) {
-  return array.is_dense() && array.components == 1 &&
-         !std::holds_alternative<std::vector<std::string>>(array.values);
+  return array.is_dense() && array.components == 1 && !are_texts(array.values);
 }
 
 Columns plan_nodal_attributes(Writing& writing) {
@@ -254,22 +260,9 @@ Columns plan_nodal_attributes(Writing& writing) {
 
 void write_nodal_attributes(Writing& writing, const Columns& columns) {
   if (columns.empty() || writing.mesh.points.empty()) return;
-  NcOutput& file = writing.file;
-  file.dimension({"num_att_in_nblk", columns.size()});
-  const NcSink sink = writing.declare("nattrb", kDouble, {"num_nodes", "num_att_in_nblk"});
-  writing.write_names("nattrib_name", "num_att_in_nblk", names_of(columns));
-  file.later([sink, columns, nodes = writing.mesh.points.size()] {
-    std::vector<double> table(nodes * columns.size());
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      std::visit(
-          [&](const auto& values) {
-            for (std::size_t v = 0; v < nodes; ++v)
-              table[v * columns.size() + k] = number_as<double>(values[v]);
-          },
-          columns[k].second->values);
-    }
-    sink.part({0, 0}, {nodes, columns.size()}, table);
-  });
+  const std::string count = "num_att_in_nblk";
+  write_columns(writing, "nattrb", kDouble, {"num_nodes", count}, columns, 0, writing.mesh.vertex_count());
+  writing.write_names("nattrib_name", count, names_of(columns));
 }
 
 /// Returns a table of names whose rows are lengthened to `length` bytes.

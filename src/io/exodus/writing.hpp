@@ -1,14 +1,16 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/cell_division.hpp"
 #include "io/exodus/exodus.hpp"
 #include "mesh/values.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -17,21 +19,36 @@ namespace meshorder::exodus {
 
 /// A block as it is written.
 struct BlockPlan {
-  Block cells;
+  CellPart cells;
   const BlockRecord* record = nullptr;  ///< its record, if the file that the mesh came from had the block
   std::int64_t id = 0;
   std::string name = {};
+
+  [[nodiscard]] bool is_full() const noexcept { return cells.count > 0; }
+  /// Returns the type of its elements.
+  [[nodiscard]] std::string_view type() const;
 };
 
-/// A file that is being written, and the results so far.
-struct Writing {
-  Writing(const Mesh& written, const ExodusMetadata& of_file, NcOutput& out, Notes& warnings)
-      : mesh(written), metadata(of_file), file(out), notes(warnings) {}
-
+/// The places that parts of a mesh get in a file, as far as they are known.
+struct Planning {
   /// Returns the array of that name and adds it to `placed`; null if it does not exist or cannot be written.
   const DataArray* take(std::string_view name, Association association);
   /// As `take`, for an array of one component; null for other arrays.
   const DataArray* take_column(std::string_view name, Association association);
+  /// Returns the block of a cell; `blocks` must be known. O(log blocks).
+  [[nodiscard]] const BlockPlan& block_of(Index cell) const;
+
+  const Mesh& mesh;
+  const ExodusMetadata& metadata;
+  Notes& notes;
+  std::vector<BlockPlan> blocks = {};
+  std::set<const DataArray*> placed = {};
+};
+
+/// A file that is being written.
+struct Writing : Planning {
+  Writing(const Mesh& written, const ExodusMetadata& of_file, NcOutput& out, Notes& warnings)
+      : Planning{written, of_file, warnings}, file(out) {}
 
   /// Declares a variable; adds the attributes that it had in the file that the mesh came from.
   NcSink declare(const std::string& variable, NcType type, const std::vector<std::string>& dimensions,
@@ -45,12 +62,7 @@ struct Writing {
                       std::vector<std::int64_t> values, const std::vector<Attribute>& attributes = {},
                       NcType type = kInt);
 
-  const Mesh& mesh;
-  const ExodusMetadata& metadata;
   NcOutput& file;
-  Notes& notes;
-  std::vector<BlockPlan> blocks;
-  std::set<const DataArray*> placed;
   std::size_t steps = 0;
 };
 
@@ -61,45 +73,39 @@ NcType written_type(NcType of_file, const Values& values);
 /// Returns whether all values are integers, or real numbers that are whole and at most 2^52 in size.
 bool are_whole(const Values& values);
 
-/// Returns the values as whole numbers, row by row. They must be of an integer type or satisfy `are_whole`;
-/// strings become 0.
+/// Returns the values, which satisfy `are_whole`, as whole numbers.
 std::vector<std::int64_t> whole_values(const Values& values);
 
-/// Converts a number to another type; a string becomes 0.
-template <class To, class From>
-To number_as(const From& value) {
-  if constexpr (std::is_arithmetic_v<From>) {
-    return static_cast<To>(value);
-  } else {
-    return To{};
-  }
-}
-
-/// Declares the status, ids and properties of blocks or sets. The names of the variables begin with `prefix`,
-/// `count` is their dimension; `is_full(plan)` returns whether a plan has members. Returns the names of the
-/// blocks or sets.
-template <class Plan, class IsFull>
-std::vector<std::string> write_plans(Writing& writing, const std::string& prefix, const std::string& count,
-                                     const std::vector<Plan>& plans,
-                                     const std::vector<std::string>& properties, const IsFull& is_full) {
+/// Declares the status, ids, properties and names of blocks or sets. The names of the variables begin with
+/// `prefix`, `count` is their dimension. `labels`: a property of new blocks, empty if there is none.
+template <class Plan>
+void write_plans(Writing& writing, const std::string& prefix, const std::string& count,
+                 const std::vector<Plan>& plans, const std::vector<std::string>& properties, bool has_names,
+                 const std::vector<std::int64_t>& labels = {}) {
   std::vector<std::int64_t> ids;
   std::vector<std::int64_t> status;
   std::vector<std::string> names;
   for (const Plan& plan : plans) {
     ids.push_back(plan.id);
-    status.push_back(is_full(plan) ? 1 : 0);
+    status.push_back(plan.is_full() ? 1 : 0);
     names.push_back(plan.name);
+    has_names = has_names || !plan.name.empty();
   }
+  int number = 0;
+  const auto write_property = [&](const std::vector<std::int64_t>& values, std::string_view name) {
+    writing.write_integers(fmt::format("{}_prop{}", prefix, ++number), count, values,
+                           {text_attribute("name", std::string(name))});
+  };
   writing.write_integers(prefix + "_status", count, status);
-  writing.write_integers(prefix + "_prop1", count, ids, {text_attribute("name", "ID")});
+  write_property(ids, "ID");
   for (std::size_t p = 0; p < properties.size(); ++p) {
     std::vector<std::int64_t> values;
     values.reserve(plans.size());
     for (const Plan& plan : plans) values.push_back(plan.record != nullptr ? plan.record->properties[p] : 0);
-    writing.write_integers(prefix + "_prop" + std::to_string(p + 2), count, values,
-                           {text_attribute("name", properties[p])});
+    write_property(values, properties[p]);
   }
-  return names;
+  if (!labels.empty()) write_property(labels, kLabelProperty);
+  if (has_names) writing.write_names(prefix + "_names", count, names);
 }
 
 inline constexpr Index kRowsAtOnce = 1 << 16;
@@ -128,28 +134,42 @@ template <class Number>
 std::vector<Number> column(const DataArray& array, Index component, const std::vector<Index>& table,
                            Index first, Index count, Number missing) {
   std::vector<Number> result(static_cast<std::size_t>(count), missing);
-  std::visit(
-      [&](const auto& values) {
-        for (Index k = 0; k < count; ++k) {
-          const Offset row = table.empty() ? first + k : table[first + k];
-          if (row < 0) continue;
-          result[k] = number_as<Number>(values[static_cast<std::size_t>(row * array.components + component)]);
-        }
-      },
-      array.values);
+  with_numbers(array.values, [&](const auto& values) {
+    for (Index k = 0; k < count; ++k) {
+      const Offset row = table.empty() ? first + k : table[first + k];
+      if (row >= 0) result[k] = static_cast<Number>(values[row * array.components + component]);
+    }
+  });
   return result;
 }
 
-/// Divides the cells, which already are in the order of the file, into `writing.blocks`.
-void plan_blocks(Writing& writing, bool is_own);
+/// Declares a table of attributes with a row for each of `count` vertices or cells from `first` on, and 0 for
+/// missing values.
+void write_columns(Writing& writing, const std::string& variable, NcType type,
+                   const std::vector<std::string>& dimensions, const Columns& columns, Index first,
+                   Index count);
+
+/// Calls `put(missing)` with the number that stands for a missing value in a variable of a type. `put` writes
+/// an array, which may be null, as numbers of that number's type.
+template <class Put>
+void put_as(NcType type, const DataArray* array, const Put& put) {
+  const bool is_wide = array != nullptr && std::holds_alternative<std::vector<std::uint64_t>>(array->values);
+  if (type == kFloat) return put(missing_value<float>());
+  if (!is_whole(type)) return put(missing_value<double>());
+  if (is_wide) return put(std::uint64_t{0});
+  put(std::int64_t{0});
+}
+
+/// Divides the cells, which already are in the order of the file, into `planning.blocks`.
+void plan_blocks(Planning& planning, bool is_own);
 
 /// Gives a block the name of a set with exactly the cells of the block, unless the set was an element set in
 /// the file. Returns the other sets of cells.
-std::vector<const EntitySet*> name_blocks(Writing& writing);
+std::vector<const EntitySet*> name_blocks(Planning& planning);
 
 /// Returns the attributes of a block. A block of the file that the mesh came from keeps the file's
 /// attributes; a new block gets the arrays "attribute NAME" that have a value in it.
-Columns attributes_of(Writing& writing, const BlockPlan& block);
+Columns attributes_of(Planning& planning, const BlockPlan& block);
 
 /// Declares the blocks with their elements and attributes. `attributes` has an entry for each block.
 void write_blocks(Writing& writing, const std::vector<Columns>& attributes);
@@ -167,10 +187,13 @@ struct SetPlan {
   int factor_width = 1;                 ///< side sets: components of the array for one side
   std::vector<std::vector<const DataArray*>> variables =
       {};  ///< by variable and step, as the record has them
+
+  [[nodiscard]] bool is_full() const noexcept { return !members.empty(); }
+  [[nodiscard]] std::size_t factor_count() const;
 };
 
 /// Returns the sets of each kind as they are written, and adds their arrays to `placed`.
-std::vector<std::vector<SetPlan>> plan_sets(Writing& writing,
+std::vector<std::vector<SetPlan>> plan_sets(Planning& planning,
                                             const std::vector<const EntitySet*>& element_sets);
 
 /// Declares the sets with their factors and variables. `steps` must be known.
@@ -189,7 +212,7 @@ struct SeriesPlan {
 /// Returns the variables of nodes or elements: the variables of the file that the mesh came from, then one
 /// variable for each component of the arrays that have no other place. Notes arrays that no variable can
 /// hold.
-std::vector<SeriesPlan> plan_series(Writing& writing, Association association);
+std::vector<SeriesPlan> plan_series(Planning& planning, Association association);
 
 void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series);
 void write_elemental(Writing& writing, const std::vector<SeriesPlan>& series);
