@@ -18,7 +18,7 @@ namespace {
 
 /// Returns the division of a mesh into blocks. Sets divide it only if it was read from another format.
 CellDivision divide(const Mesh& mesh) {
-  const auto* const own = dynamic_cast<const ExodusMetadata*>(mesh.format_metadata.get());
+  const ExodusMetadata* const own = own_metadata(mesh);
   if (own == nullptr) return divide_cells(mesh, {.sets = true});
   // if the file already has 64-bit ids, its kind of netCDF can hold them
   const bool has_wide_labels =
@@ -37,7 +37,7 @@ std::string_view BlockPlan::type() const {
   return record != nullptr && record->nodes > 0 ? record->type : type_of(cells.shape, cells.nodes);
 }
 
-const BlockPlan& Planning::block_of(Index cell) const {
+BlockPlan& Planning::block_of(Index cell) {
   const auto behind =
       std::upper_bound(blocks.begin(), blocks.end(), cell,
                        [](Index wanted, const BlockPlan& block) { return wanted < block.cells.first; });
@@ -98,9 +98,8 @@ void plan_blocks(Planning& planning, bool is_own) {
     }
   }
   while (next < found.size()) planning.blocks.push_back(found[next++]);
-  if (division.by_labels || (is_own && find_array(planning.mesh, kLabel, Association::cells) == nullptr)) {
+  if (division.by_labels || (is_own && find_array(planning.mesh, kLabel, Association::cells) == nullptr))
     planning.placed.insert(label_array(planning.mesh, Association::cells));
-  }
 }
 
 std::vector<const EntitySet*> name_blocks(Planning& planning) {
@@ -111,14 +110,9 @@ std::vector<const EntitySet*> name_blocks(Planning& planning) {
     const bool is_element_set = std::any_of(own_sets.begin(), own_sets.end(), [&](const SetRecord& record) {
       return record.in_mesh == set.name;
     });
-    const auto block =
-        std::find_if(planning.blocks.begin(), planning.blocks.end(), [&](const BlockPlan& plan) {
-          return !set.members.empty() && set.members.front() >= plan.cells.first &&
-                 set.members.front() < plan.cells.first + plan.cells.count;
-        });
-    const bool names_block = !is_element_set && !trimmed(set.name).empty() &&
-                             block != planning.blocks.end() && block->name.empty() &&
-                             index_size(set.members) == block->cells.count &&
+    BlockPlan* const block = set.members.empty() ? nullptr : &planning.block_of(set.members.front());
+    const bool names_block = !is_element_set && !trimmed(set.name).empty() && block != nullptr &&
+                             block->name.empty() && index_size(set.members) == block->cells.count &&
                              std::all_of(set.members.begin(), set.members.end(), [&](Index c) {
                                return c >= block->cells.first && c < block->cells.first + block->cells.count;
                              });

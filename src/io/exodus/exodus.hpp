@@ -187,6 +187,11 @@ struct ExodusMetadata final : FormatMetadata {
   [[nodiscard]] std::vector<std::string> contents() const override;
 };
 
+/// Returns the metadata of a mesh that was read from an Exodus file, else null.
+inline const ExodusMetadata* own_metadata(const Mesh& mesh) {
+  return dynamic_cast<const ExodusMetadata*>(mesh.format_metadata.get());
+}
+
 /// Returns "NAME step K" if there are several steps, else the name. `step` counts from 0, K from 1.
 std::string name_of_step(const std::string& name, std::size_t step, std::size_t steps);
 

@@ -27,9 +27,8 @@ class HeaderReader {
   void check() {
     at_ = 3;
     const int version = static_cast<unsigned char>(byte());
-    if (version != 1 && version != 2 && version != 5) {
+    if (version != 1 && version != 2 && version != 5)
       fail(fmt::format("the version of netCDF is {}", version), "1, 2 and 5 are known");
-    }
     wide_ = version == 5;
     wide_offsets_ = version != 1;
     records_ = count();
@@ -40,7 +39,8 @@ class HeaderReader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
+  [[noreturn]] void fail(const std::string& what,
+                         const std::string& remedy = "the file may be damaged") const {
     throw InputError(Location{file_, 0, static_cast<std::int64_t>(at_)}, what, remedy);
   }
 
@@ -65,9 +65,8 @@ class HeaderReader {
 
   std::string text() {
     const std::uint64_t length = count();
-    if (length > kNameBytes) {
+    if (length > kNameBytes)
       fail(fmt::format("a name has {} bytes", length), "netCDF's names have up to 256");
-    }
     const std::size_t begin = at_;
     skip(length);
     if (at_ > bytes_.size()) throw Ended{};
@@ -78,19 +77,15 @@ class HeaderReader {
   std::uint64_t list(std::uint64_t tag, std::uint64_t least, const char* of) {
     const std::uint64_t found = integer(4);
     const std::uint64_t length = count();
-    if (found != (length == 0 && found == 0 ? 0 : tag)) {
-      fail(fmt::format("the list of {} is not there", of), "the file may be damaged");
-    }
-    if (length > size_ / least) {
+    if (found != (length == 0 && found == 0 ? 0 : tag)) fail(fmt::format("the list of {} is not there", of));
+    if (length > size_ / least)
       fail(fmt::format("the header claims {} {}", length, of), "the file is too small for them");
-    }
     return length;
   }
 
   std::uint64_t width_of_type() {
     const std::uint64_t type = integer(4);
-    if (type < 1 || type > 11)
-      fail(fmt::format("{} is not a type of numbers", type), "the file may be damaged");
+    if (type < 1 || type > 11) fail(fmt::format("{} is not a type of numbers", type));
     return size_of(static_cast<NcType>(type));
   }
 
@@ -119,13 +114,11 @@ class HeaderReader {
                          std::uint64_t width) {
     std::uint64_t bytes = width;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      if (places[i] >= lengths_.size())
-        fail(name + " has a dimension that is not there", "the file may be damaged");
+      if (places[i] >= lengths_.size()) fail(name + " has a dimension that is not there");
       const std::uint64_t length = lengths_[places[i]];
       if (i == 0 && length == 0) continue;  // this dimension counts the records
-      if (length > size_ / std::max<std::uint64_t>(1, bytes)) {
+      if (length > size_ / std::max<std::uint64_t>(1, bytes))
         fail(fmt::format("{} has more values than the file has bytes", name), "the file may be cut short");
-      }
       bytes *= length;
     }
     return bytes;
@@ -146,8 +139,7 @@ class HeaderReader {
     for (std::uint64_t i = 0; i < variables; ++i) {
       VariablePart part{text(), 0, 0, false};
       const std::uint64_t rank = count();
-      if (rank > lengths_.size() + 1024)
-        fail(part.name + " has too many dimensions", "the file may be damaged");
+      if (rank > lengths_.size() + 1024) fail(part.name + " has too many dimensions");
       std::vector<std::uint64_t> places;
       for (std::uint64_t k = 0; k < rank; ++k) places.push_back(count());
       skip_attributes();

@@ -30,8 +30,7 @@ const NcType kDouble = NC_DOUBLE;
 
 namespace {
 
-constexpr const char* kNameInMemory = "mesh";  // netCDF might take another name for a URL
-constexpr std::string_view kDamaged = "the file may be damaged";
+constexpr const char* kNameInMemory = "mesh";   // netCDF might take another name for a URL
 constexpr std::uint64_t kMostExpansion = 1032;  // largest ratio that deflate can reach
 constexpr std::size_t kBuffer = std::size_t{1} << 18;
 
@@ -47,17 +46,6 @@ std::size_t alternative_of(NcType type) {
 
 std::size_t product(const std::vector<std::size_t>& lengths) {
   return std::accumulate(lengths.begin(), lengths.end(), std::size_t{1}, std::multiplies<>());
-}
-
-int read_part(int file, int variable, const std::size_t* starts, const std::size_t* counts, double* into) {
-  return nc_get_vara_double(file, variable, starts, counts, into);
-}
-int read_part(int file, int variable, const std::size_t* starts, const std::size_t* counts, float* into) {
-  return nc_get_vara_float(file, variable, starts, counts, into);
-}
-template <class Number>
-int read_part(int file, int variable, const std::size_t* starts, const std::size_t* counts, Number* into) {
-  return nc_get_vara(file, variable, starts, counts, into);
 }
 
 }  // namespace
@@ -141,8 +129,7 @@ void NcInput::fail(const std::string& what, const std::string& remedy) const {
 
 void NcInput::check(int status, const std::string& what) const {
   if (status == NC_NOERR) return;
-  fail(fmt::format("{}netCDF says: {}", what.empty() ? "" : what + ": ", nc_strerror(status)),
-       std::string(kDamaged));
+  fail(fmt::format("{}netCDF says: {}", what.empty() ? "" : what + ": ", nc_strerror(status)));
 }
 
 void NcInput::inquire() {
@@ -204,9 +191,7 @@ std::size_t NcInput::length(const std::string& name) const {
 
 std::size_t NcInput::count(const std::string& dimension) const {
   const std::size_t found = length(dimension);
-  if (found > size_) {
-    fail(fmt::format("{} is {}, but the file has {} bytes", dimension, found, size_), std::string(kDamaged));
-  }
+  if (found > size_) fail(fmt::format("{} is {}, but the file has {} bytes", dimension, found, size_));
   return found;
 }
 
@@ -226,10 +211,8 @@ std::size_t NcInput::size(const Variable& variable) const {
                                  ? std::numeric_limits<std::uint64_t>::max()
                                  : size_ * kMostExpansion;
   for (const std::size_t length : lengths) {
-    if (length > most / bytes) {
-      fail(fmt::format("{} claims more values than a file of {} bytes can hold", variable.name, size_),
-           std::string(kDamaged));
-    }
+    if (length > most / bytes)
+      fail(fmt::format("{} claims more values than a file of {} bytes can hold", variable.name, size_));
     bytes *= length;
   }
   return product(lengths);
@@ -263,8 +246,7 @@ std::vector<Attribute> NcInput::attributes(const Variable* variable, std::vector
       lost.push_back((variable == nullptr ? "" : variable->name + ":") + attribute.name);
       continue;
     }
-    if (attribute.count > size_ / width)
-      fail("the attribute " + attribute.name + " is larger than the file", std::string(kDamaged));
+    if (attribute.count > size_ / width) fail("the attribute " + attribute.name + " is larger than the file");
     attribute.bytes.resize(attribute.count * width);
     check(nc_get_att(id_, of, name.data(), attribute.bytes.data()), attribute.name);
     result.push_back(std::move(attribute));
@@ -275,9 +257,8 @@ std::vector<Attribute> NcInput::attributes(const Variable* variable, std::vector
 std::string NcInput::text(const Variable& variable, const std::string& attribute) const {
   std::vector<std::string> ignored;
   for (const Attribute& candidate : attributes(&variable, ignored)) {
-    if (candidate.name == attribute && candidate.type == kChar) {
+    if (candidate.name == attribute && candidate.type == kChar)
       return candidate.bytes.substr(0, candidate.bytes.find('\0'));
-    }
   }
   return {};
 }
@@ -299,7 +280,7 @@ std::vector<std::int64_t> NcInput::integers(const Variable& variable) const {
 
 std::vector<std::int64_t> NcInput::integers(const Variable& variable, const std::vector<std::size_t>& starts,
                                             const std::vector<std::size_t>& counts) const {
-  if (!is_whole(variable.type)) fail(variable.name + " has no whole numbers", std::string(kDamaged));
+  if (!is_whole(variable.type)) fail(variable.name + " has no whole numbers");
   static_assert(sizeof(long long) == sizeof(std::int64_t));
   (void)size(variable);  // throws if the file is too small for its values
   std::vector<long long> values(claimed(variable.name, product(counts), 2 * sizeof(long long)));
@@ -310,9 +291,7 @@ std::vector<std::int64_t> NcInput::integers(const Variable& variable, const std:
 
 std::vector<double> NcInput::reals(const Variable& variable, const std::vector<std::size_t>& starts,
                                    const std::vector<std::size_t>& counts) const {
-  if (size_of(variable.type) == 0 || variable.type == kChar) {
-    fail(variable.name + " has no numbers", std::string(kDamaged));
-  }
+  if (size_of(variable.type) == 0 || variable.type == kChar) fail(variable.name + " has no numbers");
   (void)size(variable);  // throws if the file is too small for its values
   std::vector<double> values(claimed(variable.name, product(counts), sizeof(double)));
   if (values.empty()) return values;
@@ -329,9 +308,7 @@ std::string NcInput::bytes(const Variable& variable) const {
 
 std::vector<std::string> NcInput::texts(const Variable& variable) const {
   const std::vector<std::size_t> lengths = shape(variable);
-  if (variable.type != kChar || lengths.size() != 2) {
-    fail(variable.name + " is not a table of characters", std::string(kDamaged));
-  }
+  if (variable.type != kChar || lengths.size() != 2) fail(variable.name + " is not a table of characters");
   const std::string all = bytes(variable);
   (void)claimed(variable.name, lengths[0], sizeof(std::string));
   std::vector<std::string> result;
@@ -353,9 +330,9 @@ Values NcInput::values(const Variable& variable, const std::vector<std::size_t>&
     if constexpr (std::is_arithmetic_v<Number>) {
       numbers.resize(claimed(variable.name, product(counts), sizeof(Number)));
       if (numbers.empty()) return;
-      check(read_part(id_, variable.id, starts.data(), counts.data(), numbers.data()), variable.name);
+      check(nc_get_vara(id_, variable.id, starts.data(), counts.data(), numbers.data()), variable.name);
     } else {
-      fail(variable.name + " has no numbers", std::string(kDamaged));
+      fail(variable.name + " has no numbers");
     }
   });
 }
@@ -467,9 +444,8 @@ NcSink NcOutput::variable(const std::string& name, NcType type, const std::vecto
   for (const std::string& dimension : dimensions) ids.push_back(dimensions_.at(dimension).first);
   int id = 0;
   check(nc_def_var(id_, name.c_str(), type, static_cast<int>(ids.size()), ids.data(), &id), name);
-  if (storage_.deflate > 0 && !ids.empty() && type != kChar) {
+  if (storage_.deflate > 0 && !ids.empty() && type != kChar)
     check(nc_def_var_deflate(id_, id, storage_.shuffle ? 1 : 0, 1, storage_.deflate), name);
-  }
   for (const Attribute& attribute : attributes) put_attribute(id, attribute, name);
   declared_.insert(name);
   return {*this, name, id};

@@ -144,7 +144,8 @@ class NcInput {
   [[nodiscard]] Storage storage() const;
 
   /// Throws InputError for a fault of the file.
-  [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;
+  [[noreturn]] void fail(const std::string& what,
+                         const std::string& remedy = "the file may be damaged") const;
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
  private:

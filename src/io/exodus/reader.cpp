@@ -35,13 +35,25 @@ void Reading::require_shape(const Variable& variable, const std::vector<std::siz
   const std::vector<std::size_t> shape = file.shape(variable);
   if (shape == expected) return;
   file.fail(fmt::format("{} has {} values, not {}", variable.name, fmt::join(shape, " × "),
-                        fmt::join(expected, " × ")),
-            "the file may be damaged");
+                        fmt::join(expected, " × ")));
 }
 
 std::string Reading::add_array(DataArray array, MeshPart::ArrayRows rows) {
   part.arrays.push_back(std::move(rows));
   return add_named(part.mesh, std::move(array), arrays_);
+}
+
+std::string Reading::add_array(std::string name, Values values, const std::vector<std::size_t>& blocks) {
+  DataArray array{.name = std::move(name), .association = Association::cells, .values = std::move(values)};
+  std::size_t count = 0;
+  for (const std::size_t b : blocks) count += size_of_block(b);
+  const bool is_partial = count != static_cast<std::size_t>(elements);
+  for (const std::size_t b : blocks) {
+    const MeshRange own = own_of_block(b);
+    for (Index c = own.first; is_partial && c < own.end; ++c)
+      array.indices.push_back(c - part.ranges.cells.first);
+  }
+  return add_array(std::move(array), {is_partial});
 }
 
 std::string Reading::add_set(EntitySet set, MeshPart::SetRows rows) {
@@ -82,9 +94,8 @@ namespace {
 
 Index checked_length(const NcInput& file, const std::string& dimension) {
   const std::size_t length = file.length(dimension);
-  if (length > static_cast<std::size_t>(kMaxIndex)) {
+  if (length > static_cast<std::size_t>(kMaxIndex))
     file.fail(fmt::format("{} is {}", dimension, length), "2,147,483,647 is the largest");
-  }
   return static_cast<Index>(length);
 }
 
@@ -98,9 +109,8 @@ void refuse_unknown_kinds(const NcInput& file) {
         {"num_face_sets", "sets of faces"},
     }};
     for (const auto& [name, words] : kKinds) {
-      if (dimension.name == name && dimension.length > 0) {
+      if (dimension.name == name && dimension.length > 0)
         file.fail(fmt::format("has {} {}", dimension.length, words), "blocks of elements are understood");
-      }
     }
   }
 }
@@ -136,9 +146,8 @@ void read_counts(Reading& reading) {
   reading.nodes = checked_length(file, "num_nodes");
   reading.elements = checked_length(file, "num_elem");
   const std::size_t dimension = file.length("num_dim");
-  if (dimension < 1 || dimension > 3) {
+  if (dimension < 1 || dimension > 3)
     file.fail(fmt::format("num_dim is {}", dimension), "1, 2 and 3 are possible");
-  }
   reading.metadata->coordinates = static_cast<int>(dimension);
   reading.part.mesh.dimension = dimension == 3 ? 3 : 2;
   reading.part.ranges = {{0, reading.nodes}, {0, reading.elements}};
@@ -154,30 +163,23 @@ void read_counts(Reading& reading) {
 
 void read_points(Reading& reading) {
   const NcInput& file = reading.file;
-  ExodusMetadata& metadata = *reading.metadata;
-  std::vector<Point>& points = reading.part.mesh.points;
-  const auto nodes = static_cast<std::size_t>(reading.nodes);
-  const auto dimension = static_cast<std::size_t>(metadata.coordinates);
-  const MeshRange range = reading.part.ranges.vertices;
-  const auto first = static_cast<std::size_t>(range.first);
-  const auto count = static_cast<std::size_t>(range.size());
-  const auto read_axis = [&](const Variable& variable, const std::vector<double>& values, std::size_t k) {
-    points.resize(count);
-    for (std::size_t v = 0; v < count; ++v) points[v][k] = values[v];
-    metadata.coordinate_type = variable.type;
-  };
-  if (const Variable* const all = reading.take("coord")) {
-    reading.require_shape(*all, {dimension, nodes});
-    metadata.packs_coordinates = true;
-    for (std::size_t k = 0; k < dimension; ++k) read_axis(*all, file.reals(*all, {k, first}, {1, count}), k);
-    return;
-  }
   constexpr std::array kNames{"coordx", "coordy", "coordz"};
-  for (std::size_t k = 0; k < dimension && nodes > 0; ++k) {
-    const Variable* const one = reading.take(kNames[k]);
-    if (one == nullptr) file.fail(fmt::format("{} is not there", kNames[k]), "the points need coordinates");
-    reading.require_shape(*one, {nodes});
-    read_axis(*one, file.reals(*one, {first}, {count}), k);
+  const auto nodes = static_cast<std::size_t>(reading.nodes);
+  const auto dimension = static_cast<std::size_t>(reading.metadata->coordinates);
+  const auto [first, count] = reading.rows(Association::vertices);
+  const Variable* const all = reading.take("coord");
+  reading.metadata->packs_coordinates = all != nullptr;
+  if (all != nullptr) reading.require_shape(*all, {dimension, nodes});
+  for (std::size_t k = 0; k < dimension && (all != nullptr || nodes > 0); ++k) {
+    const Variable* const variable = all != nullptr ? all : reading.take(kNames[k]);
+    if (variable == nullptr)
+      file.fail(fmt::format("{} is not there", kNames[k]), "the points need coordinates");
+    if (all == nullptr) reading.require_shape(*variable, {nodes});
+    const std::vector<double> values =
+        all != nullptr ? file.reals(*all, {k, first}, {1, count}) : file.reals(*variable, {first}, {count});
+    reading.metadata->coordinate_type = variable->type;
+    reading.part.mesh.points.resize(count);
+    for (std::size_t v = 0; v < count; ++v) reading.part.mesh.points[v][k] = values[v];
   }
 }
 
@@ -186,14 +188,11 @@ void read_elements(Reading& reading, const Variable& connect, std::size_t b) {
   const NcInput& file = reading.file;
   const BlockRecord& block = reading.metadata->blocks[b];
   Cells& cells = reading.part.mesh.cells;
-  const MeshRange own = reading.own_of_block(b);
-  const auto first = static_cast<std::size_t>(own.first - reading.block_ends[b]);
-  const auto elements = static_cast<std::size_t>(own.size());
+  const auto [first, elements] = reading.rows_of_block(b);
   const std::size_t begin = cells.vertices.size();
   const auto nodes = static_cast<std::size_t>(block.nodes);
-  if (file.size(connect) > static_cast<std::size_t>(kMaxIndex) * 64) {
-    file.fail(connect.name + " is too large", "the file may be damaged");
-  }
+  if (file.size(connect) > static_cast<std::size_t>(kMaxIndex) * 64)
+    file.fail(connect.name + " is too large");
   cells.vertices.resize(begin + elements * nodes);
   file.read(connect, {first, 0}, {elements, nodes}, cells.vertices.data() + begin);
   const std::span<const int> order = file_order(block.shape, block.nodes);
@@ -215,9 +214,8 @@ void read_elements(Reading& reading, const Variable& connect, std::size_t b) {
     for (std::size_t k = 0; k < nodes; ++k) row[k] = of_file[static_cast<std::size_t>(order[k])];
   }
   cells.shapes.insert(cells.shapes.end(), elements, block.shape);
-  for (std::size_t e = 0; e < elements; ++e) {
+  for (std::size_t e = 0; e < elements; ++e)
     cells.offsets.push_back(cells.offsets.back() + static_cast<Offset>(nodes));
-  }
 }
 
 /// Reads the elements of all blocks.
@@ -229,8 +227,7 @@ void read_cells(Reading& reading) {
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     if (blocks[b].nodes == 0) continue;
     (void)file.size(*file.find(fmt::format("connect{}", b + 1)));  // throws if the file is too small
-    entries +=
-        static_cast<std::size_t>(reading.own_of_block(b).size()) * static_cast<std::size_t>(blocks[b].nodes);
+    entries += reading.rows_of_block(b).count * static_cast<std::size_t>(blocks[b].nodes);
   }
   (void)file.claimed("the connectivity", entries, sizeof(Index));
   mesh.cells.reserve(reading.part.ranges.cells.size(), static_cast<Offset>(entries));
@@ -243,22 +240,21 @@ void read_cells(Reading& reading) {
   if (!mesh.cell_blocks.empty()) mesh.cell_blocks.insert(mesh.cell_blocks.begin(), 0);
 }
 
-/// An attribute of elements, collected from several blocks.
-struct AttributeColumn {
-  DataArray array;
-  Index rows = 0;  ///< number of elements with a value in the whole mesh, not only in the range
+/// Values of elements of some blocks, one block after another.
+struct ValuesOfBlocks {
+  std::vector<double> values;
+  std::vector<std::size_t> blocks;  ///< that have elements
 };
 
 /// Reads the attributes of a block and appends them to `columns`, by name of the array.
-void read_attributes(Reading& reading, std::size_t b, std::map<std::string, AttributeColumn>& columns) {
+void read_attributes(Reading& reading, std::size_t b, std::map<std::string, ValuesOfBlocks>& columns) {
   const NcInput& file = reading.file;
   BlockRecord& block = reading.metadata->blocks[b];
   const std::string number = std::to_string(b + 1);
   const Variable* const variable = reading.take("attrib" + number);
   if (variable == nullptr) return;
-  const auto elements = static_cast<std::size_t>(reading.block_ends[b + 1] - reading.block_ends[b]);
-  const MeshRange own = reading.own_of_block(b);
-  const auto first = static_cast<std::size_t>(own.first - reading.block_ends[b]);
+  const std::size_t elements = reading.size_of_block(b);
+  const auto [first, rows] = reading.rows_of_block(b);
   const std::vector<std::size_t> shape = file.shape(*variable);
   // a single attribute may lack the second dimension
   const std::size_t count = shape.size() == 1 ? 1 : shape.size() == 2 ? shape[1] : 0;
@@ -268,7 +264,7 @@ void read_attributes(Reading& reading, std::size_t b, std::map<std::string, Attr
   const std::vector<std::string> names = reading.take_names("attrib_name" + number, count);
   block.attribute_type = variable->type;
   std::vector<std::size_t> starts{first, 0};
-  std::vector<std::size_t> counts{static_cast<std::size_t>(own.size()), count};
+  std::vector<std::size_t> counts{rows, count};
   starts.resize(shape.size());
   counts.resize(shape.size());
   const std::vector<double> values = file.reals(*variable, starts, counts);
@@ -277,19 +273,11 @@ void read_attributes(Reading& reading, std::size_t b, std::map<std::string, Attr
     std::string name(kAttribute);
     name += names[k].empty() || used.contains(names[k]) ? std::to_string(k + 1) : names[k];
     if (!used.insert(name.substr(kAttribute.size())).second) name += " of " + number;
-    auto& [array, rows] = columns[name];
-    rows += reading.block_ends[b + 1] - reading.block_ends[b];
-    if (array.name.empty()) {
-      array.name = name;
-      array.association = Association::cells;
-      array.values = std::vector<double>();
-    }
-    auto& column = std::get<std::vector<double>>(array.values);
-    for (Index e = 0; e < own.size(); ++e) {
-      column.push_back(values[static_cast<std::size_t>(e) * count + k]);
-      array.indices.push_back(own.first + e - reading.part.ranges.cells.first);
-    }
     block.attributes.emplace_back(names[k], name);
+    if (elements == 0) continue;
+    ValuesOfBlocks& column = columns[name];
+    column.blocks.push_back(b);
+    for (std::size_t e = 0; e < rows; ++e) column.values.push_back(values[e * count + k]);
   }
 }
 
@@ -320,10 +308,8 @@ void label_cells(Reading& reading) {
   }
   std::vector<std::int64_t> labels;
   labels.reserve(reading.part.mesh.cells.shapes.size());
-  for (std::size_t b = 0; b < metadata.blocks.size(); ++b) {
-    labels.insert(labels.end(), static_cast<std::size_t>(reading.own_of_block(b).size()),
-                  metadata.blocks[b].label);
-  }
+  for (std::size_t b = 0; b < metadata.blocks.size(); ++b)
+    labels.insert(labels.end(), reading.rows_of_block(b).count, metadata.blocks[b].label);
   reading.add_array({.name = std::string(kLabel),
                      .association = Association::cells,
                      .values = label_values(std::move(labels))});
@@ -359,10 +345,8 @@ void read_block(Reading& reading, std::size_t b, const Variable* connect) {
     file.fail(fmt::format("block {} (id {}) has elements of type '{}'", b + 1, block.id, block.type),
               "elements with a fixed number of nodes are understood");
   }
-  if (shape[0] > static_cast<std::size_t>(reading.elements - reading.block_ends.back())) {
-    file.fail(fmt::format("connect{} has more elements than num_elem, {}, leaves", b + 1, reading.elements),
-              "the file may be damaged");
-  }
+  if (shape[0] > static_cast<std::size_t>(reading.elements - reading.block_ends.back()))
+    file.fail(fmt::format("connect{} has more elements than num_elem, {}, leaves", b + 1, reading.elements));
   reading.block_ends.push_back(reading.block_ends.back() + static_cast<Index>(shape[0]));
   if (shape[0] == 0) return;
   const Shape* const found =
@@ -384,40 +368,26 @@ void read_block(Reading& reading, std::size_t b, const Variable* connect) {
 void read_blocks(Reading& reading) {
   const NcInput& file = reading.file;
   ExodusMetadata& metadata = *reading.metadata;
-  const std::size_t count = file.count("num_el_blk");
-  const std::vector<std::int64_t> ids = read_ids(reading, "eb_prop1", count);
-  metadata.names_blocks = file.find("eb_names") != nullptr;
-  const std::vector<std::string> names = reading.take_names("eb_names", count);
-  (void)reading.take("eb_status");
-  metadata.blocks.resize(count);
-  metadata.block_properties = read_properties(reading, "eb", count, [&](std::size_t b, std::int64_t value) {
-    metadata.blocks[b].properties.push_back(value);
-  });
-  for (std::size_t b = 0; b < count; ++b) {
-    BlockRecord& block = metadata.blocks[b];
-    block.id = block.label = ids[b];
-    block.name = names[b];
+  std::vector<BlockRecord>& blocks = metadata.blocks;
+  blocks.resize(file.count("num_el_blk"));
+  metadata.block_properties = read_records(reading, "eb", blocks, metadata.names_blocks);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    blocks[b].label = blocks[b].id;
     read_block(reading, b, file.find(fmt::format("connect{}", b + 1)));
   }
   if (reading.block_ends.back() != reading.elements) {
     file.fail(fmt::format("num_elem is {}, but the blocks have {} elements", reading.elements,
-                          reading.block_ends.back()),
-              "the file may be damaged");
+                          reading.block_ends.back()));
   }
 }
 
 /// Reads labels, names and attributes of blocks.
 void read_data_of_blocks(Reading& reading) {
-  std::map<std::string, AttributeColumn> attributes;
+  std::map<std::string, ValuesOfBlocks> attributes;
   for (std::size_t b = 0; b < reading.metadata->blocks.size(); ++b) read_attributes(reading, b, attributes);
   label_cells(reading);
   name_blocks(reading);
-  for (auto& [name, column] : attributes) {
-    if (column.rows == 0) continue;  // only blocks without elements have the attribute
-    const bool is_partial = column.rows != reading.elements;
-    if (!is_partial) column.array.indices.clear();
-    reading.add_array(std::move(column.array), {is_partial});
-  }
+  for (auto& [name, column] : attributes) reading.add_array(name, std::move(column.values), column.blocks);
 }
 
 void read_nodal_attributes(Reading& reading) {
@@ -425,12 +395,10 @@ void read_nodal_attributes(Reading& reading) {
   const Variable* const variable = reading.take("nattrb");
   if (variable == nullptr) return;
   const auto count = file.count("num_att_in_nblk");
-  const MeshRange own = reading.part.ranges.vertices;
-  const auto nodes = static_cast<std::size_t>(own.size());
+  const auto [first, nodes] = reading.rows(Association::vertices);
   reading.require_shape(*variable, {static_cast<std::size_t>(reading.nodes), count});
   const std::vector<std::string> names = reading.take_names("nattrib_name", count);
-  const std::vector<double> values =
-      file.reals(*variable, {static_cast<std::size_t>(own.first), 0}, {nodes, count});
+  const std::vector<double> values = file.reals(*variable, {first, 0}, {nodes, count});
   for (std::size_t k = 0; k < count; ++k) {
     std::vector<double> column(nodes);
     for (std::size_t v = 0; v < nodes; ++v) column[v] = values[v * count + k];
@@ -440,6 +408,13 @@ void read_nodal_attributes(Reading& reading) {
   }
 }
 
+/// Returns the whole numbers of a variable with one for each node or element of the whole mesh.
+std::vector<std::int64_t> numbers_of(const Reading& reading, const Variable& variable, Association of) {
+  reading.require_shape(variable, {static_cast<std::size_t>(reading.count(of))});
+  const auto [first, count] = reading.rows(of);
+  return reading.file.integers(variable, {first}, {count});
+}
+
 /// Returns the numbers of nodes or elements; empty if the file has none, or if a whole mesh is read and the
 /// numbers are 1, 2, …
 std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& name, Association of,
@@ -447,9 +422,7 @@ std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& name
   const Variable* const variable = reading.take(name);
   is_there = variable != nullptr;
   if (variable == nullptr) return {};
-  reading.require_shape(*variable, {static_cast<std::size_t>(reading.count(of))});
-  const MeshRange range = reading.range(of);
-  std::vector<std::int64_t> numbers = reading.file.integers(*variable, start_of(range), count_of(range));
+  std::vector<std::int64_t> numbers = numbers_of(reading, *variable, of);
   if (!reading.is_whole()) return numbers;
   bool plain = true;
   for (std::size_t i = 0; i < numbers.size() && plain; ++i)
@@ -468,16 +441,13 @@ void read_named_maps(Reading& reading, const std::string& word, const char* pref
   const std::size_t number = reading.file.count("num_" + word + "_maps");
   const std::vector<std::int64_t> ids = read_ids(reading, std::string(prefix) + "_prop1", number);
   const std::vector<std::string> names = reading.take_names(std::string(prefix) + "ap_names", number);
-  const MeshRange range = reading.range(of);
   for (std::size_t m = 0; m < number; ++m) {
     const Variable* const variable = reading.take(fmt::format("{}_map{}", word, m + 1));
     if (variable == nullptr) continue;
-    reading.require_shape(*variable, {static_cast<std::size_t>(reading.count(of))});
     const std::string name = names[m].empty() ? std::to_string(ids[m]) : names[m];
-    DataArray array{
-        .name = name == kOriginal ? name : std::string(kMap) + name,
-        .association = of,
-        .values = label_values(reading.file.integers(*variable, start_of(range), count_of(range)))};
+    DataArray array{.name = name == kOriginal ? name : std::string(kMap) + name,
+                    .association = of,
+                    .values = label_values(numbers_of(reading, *variable, of))};
     maps.push_back({ids[m], names[m], reading.add_array(std::move(array)), variable->type});
   }
 }
@@ -562,9 +532,8 @@ void keep_others(Reading& reading) {
   }
   for (std::size_t place = 0; place < file.dimensions().size(); ++place) {
     const Dimension& dimension = file.dimensions()[place];
-    if (!used.contains(static_cast<int>(place)) && !is_of_nodes_or_elements(reading, dimension)) {
+    if (!used.contains(static_cast<int>(place)) && !is_of_nodes_or_elements(reading, dimension))
       metadata.dimensions.push_back(dimension);
-    }
   }
   metadata.attributes = file.attributes(nullptr, lost);
   for (const std::string& name : lost)
@@ -593,19 +562,12 @@ void read_header(Reading& reading) {
   const std::size_t given = std::max(reading.file.length("len_name"), reading.file.length("len_string"));
   metadata.name_length = std::clamp<std::size_t>(given, 33, 1024);
   read_steps(reading);
-  if (reading.file.find("connect1") == nullptr && reading.file.length("num_elem") == 0) {
+  if (reading.file.find("connect1") == nullptr && reading.file.length("num_elem") == 0)
     reading.file.fail("has no blocks of elements", "it may be a netCDF file other than Exodus");
-  }
   refuse_unknown_kinds(reading.file);
   leave_out_decomposition(reading);
   read_counts(reading);
   read_blocks(reading);
-}
-
-/// Reads points and cells.
-void read_geometry(Reading& reading) {
-  read_points(reading);
-  read_cells(reading);
 }
 
 /// Reads all data of points and cells: attributes, numbers, maps, sets, variables and others.
@@ -614,7 +576,8 @@ void read_data(Reading& reading) {
   read_maps(reading);
   read_nodal_attributes(reading);
   read_sets(reading);
-  read_variables(reading);
+  read_nodal(reading);
+  read_elemental(reading);
   keep_others(reading);
   reading.part.mesh.format_metadata = reading.metadata;
 }
@@ -624,8 +587,7 @@ void require_finite_points(const Reading& reading) {
   for (std::size_t v = 0; v < points.size(); ++v) {
     if (std::all_of(points[v].begin(), points[v].end(), [](double x) { return std::isfinite(x); })) continue;
     reading.file.fail(fmt::format("vertex {} has a coordinate that is not finite",
-                                  static_cast<std::size_t>(reading.part.ranges.vertices.first) + v),
-                      "the file may be damaged");
+                                  static_cast<std::size_t>(reading.part.ranges.vertices.first) + v));
   }
 }
 
@@ -634,7 +596,8 @@ void require_finite_points(const Reading& reading) {
 Mesh read(const FilePath& path, Notes& notes) {
   Reading reading(path, nullptr, notes);
   read_header(reading);
-  read_geometry(reading);
+  read_points(reading);
+  read_cells(reading);
   read_data(reading);
   return std::move(reading.part.mesh);
 }
@@ -654,7 +617,8 @@ Header read_header(const FilePath& path) {
 MeshPart read_part(const FilePath& path, const MeshRanges& ranges, PartContent content, Notes& notes) {
   Reading reading(path, &ranges, notes);
   read_header(reading);
-  read_geometry(reading);
+  read_points(reading);
+  read_cells(reading);
   require_finite_points(reading);
   if (content == PartContent::all) read_data(reading);
   return std::move(reading.part);

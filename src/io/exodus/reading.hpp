@@ -13,6 +13,12 @@
 
 namespace meshorder::exodus {
 
+/// Consecutive rows of a netCDF variable.
+struct Rows {
+  std::size_t first;
+  std::size_t count;
+};
+
 /// A file that is being read, completely or in part, and the results so far.
 struct Reading {
   /// @param wanted  the ranges to read; null: the whole mesh. Must outlive this object
@@ -28,6 +34,9 @@ struct Reading {
 
   /// Adds an array, under a name that no other array has, and returns that name.
   std::string add_array(DataArray array, MeshPart::ArrayRows rows = {});
+  /// Adds an array on the elements of some blocks that have elements; `values` are those of one block after
+  /// another. Returns its name.
+  std::string add_array(std::string name, Values values, const std::vector<std::size_t>& blocks);
   /// Adds a set, under a name that no other set has, and returns that name.
   std::string add_set(EntitySet set, MeshPart::SetRows rows = {});
 
@@ -40,9 +49,23 @@ struct Reading {
   [[nodiscard]] Index count(Association association) const {
     return association == Association::vertices ? nodes : elements;
   }
+  /// Returns the rows to read of a variable with a row for each vertex or cell.
+  [[nodiscard]] Rows rows(Association association) const {
+    const MeshRange own = range(association);
+    return {static_cast<std::size_t>(own.first), static_cast<std::size_t>(own.size())};
+  }
   /// Returns the range of a block's cells that are read.
   [[nodiscard]] MeshRange own_of_block(std::size_t b) const {
     return MeshRange{block_ends[b], block_ends[b + 1]}.common(part.ranges.cells);
+  }
+  /// Returns the rows to read of a variable with a row for each cell of a block.
+  [[nodiscard]] Rows rows_of_block(std::size_t b) const {
+    const MeshRange own = own_of_block(b);
+    return {static_cast<std::size_t>(own.first - block_ends[b]), static_cast<std::size_t>(own.size())};
+  }
+  /// Returns the number of a block's cells in the whole mesh.
+  [[nodiscard]] std::size_t size_of_block(std::size_t b) const {
+    return static_cast<std::size_t>(block_ends[b + 1] - block_ends[b]);
   }
   /// Returns the block of a cell of the whole mesh. O(log blocks).
   [[nodiscard]] const BlockRecord& block_of(Index cell) const;
@@ -66,32 +89,39 @@ struct Reading {
   UniqueNames sets_;
 };
 
-/// Returns the names of the properties except ID, and calls `put(object, value)` for each of their values.
-template <class Put>
-std::vector<std::string> read_properties(Reading& reading, const std::string& prefix, std::size_t objects,
-                                         Put put) {
-  std::vector<std::string> names;
-  for (int k = 2;; ++k) {
-    const Variable* const variable = reading.take(prefix + "_prop" + std::to_string(k));
-    if (variable == nullptr) return names;
-    reading.require_shape(*variable, {objects});
-    const std::vector<std::int64_t> values = reading.file.integers(*variable);
-    for (std::size_t object = 0; object < objects; ++object) put(object, values[object]);
-    names.push_back(reading.file.text(*variable, "name"));
-  }
-}
-
 /// Returns the ids of blocks, sets or maps; 1, 2, … if the file has no ids or gives an id twice.
 std::vector<std::int64_t> read_ids(Reading& reading, const std::string& variable, std::size_t objects);
 
-/// Return the start and the number of values of a range, for reading a variable of one dimension.
-inline std::vector<std::size_t> start_of(MeshRange range) { return {static_cast<std::size_t>(range.first)}; }
-inline std::vector<std::size_t> count_of(MeshRange range) { return {static_cast<std::size_t>(range.size())}; }
+/// Reads the ids, names and properties of blocks or sets. The names of their variables begin with `prefix`.
+/// Returns the names of the properties except ID.
+template <class Record>
+std::vector<std::string> read_records(Reading& reading, const std::string& prefix,
+                                      std::vector<Record>& records, bool& has_names) {
+  const std::size_t count = records.size();
+  const std::vector<std::int64_t> ids = read_ids(reading, prefix + "_prop1", count);
+  has_names = reading.file.find(prefix + "_names") != nullptr;
+  const std::vector<std::string> names = reading.take_names(prefix + "_names", count);
+  (void)reading.take(prefix + "_status");
+  for (std::size_t i = 0; i < count; ++i) {
+    records[i].id = ids[i];
+    records[i].name = names[i];
+  }
+  std::vector<std::string> properties;
+  for (int k = 2;; ++k) {
+    const Variable* const variable = reading.take(prefix + "_prop" + std::to_string(k));
+    if (variable == nullptr) return properties;
+    reading.require_shape(*variable, {count});
+    const std::vector<std::int64_t> values = reading.file.integers(*variable);
+    for (std::size_t i = 0; i < count; ++i) records[i].properties.push_back(values[i]);
+    properties.push_back(reading.file.text(*variable, "name"));
+  }
+}
 
-/// Reads the sets of nodes, sides and elements.
+/// Reads the sets of nodes, sides and elements, and their variables at all steps.
 void read_sets(Reading& reading);
 
-/// Reads the variables of nodes, elements and sets at all steps.
-void read_variables(Reading& reading);
+/// Read the variables of nodes and of elements at all steps.
+void read_nodal(Reading& reading);
+void read_elemental(Reading& reading);
 
 }  // namespace meshorder::exodus

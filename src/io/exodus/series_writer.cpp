@@ -76,9 +76,8 @@ class SeriesPlanner {
 
   std::vector<SeriesPlan> plans() && {
     const ExodusMetadata& of_file = planning_.metadata;
-    for (const Series& series : association_ == Association::vertices ? of_file.nodal : of_file.elements) {
+    for (const Series& series : association_ == Association::vertices ? of_file.nodal : of_file.elements)
       add(series);
-    }
     for (const DataArray& array : planning_.mesh.data) {
       if (array.association == association_ && !planning_.placed.contains(&array)) add(array);
     }
@@ -104,9 +103,7 @@ class SeriesPlanner {
 
   void add(const DataArray& array) {
     Notes& notes = planning_.notes;
-    if (are_texts(array.values)) {
-      return note_array_unsupported(array, "Exodus", notes);
-    }
+    if (are_texts(array.values)) return note_array_unsupported(array, "Exodus", notes);
     note_digits(&array, kDouble);
     if (array.components == 1) return add(array, 0, array.name);
     const std::vector<std::string> names = names_of_components(array);
@@ -126,9 +123,8 @@ class SeriesPlanner {
     const std::string name = numbers_.free_name(
         held, [&](int k) { return fmt::format("{} ({})", held, k); },
         [&](const std::string& free) { return names_.insert(free).second; });
-    if (name != wanted) {
+    if (name != wanted)
       planning_.notes.push_back(fmt::format("the array '{}' is written as the variable '{}'", wanted, name));
-    }
     const std::size_t steps = std::max<std::size_t>(1, planning_.metadata.steps);
     if (steps > 1) {
       planning_.notes.push_back(
@@ -163,7 +159,7 @@ NcType type_of_all(const std::vector<SeriesPlan>& series) {
 }
 
 /// Returns, for each block, the number of cells for which an array has a row.
-std::vector<Index> rows_in_blocks(const Writing& writing, const DataArray& array) {
+std::vector<Index> rows_in_blocks(Writing& writing, const DataArray& array) {
   std::vector<Index> rows;
   for (const BlockPlan& block : writing.blocks) rows.push_back(array.is_dense() ? block.cells.count : 0);
   for (const Index cell : array.indices)

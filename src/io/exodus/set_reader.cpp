@@ -11,7 +11,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 
 // Reads sets of nodes, sides and elements with their distribution factors, and variables over the steps.
 
@@ -101,21 +100,15 @@ class SetReader {
     const std::size_t count = file.count(std::string(kind_.count));
     if (count == 0) return;
     family_.sets.resize(count);
-    const std::vector<std::int64_t> ids = read_ids(reading_, prefix + "_prop1", count);
-    family_.has_names = file.find(prefix + "_names") != nullptr;
-    const std::vector<std::string> names = reading_.take_names(prefix + "_names", count);
-    (void)reading_.take(prefix + "_status");
-    family_.properties = read_properties(reading_, prefix, count, [&](std::size_t s, std::int64_t value) {
-      family_.sets[s].properties.push_back(value);
-    });
-    const std::vector<std::int64_t> table = read_names_of_variables();
+    family_.properties = read_records(reading_, prefix, family_.sets, family_.has_names);
+    const std::string of(kind_.variable);
+    family_.variables = reading_.take_names("name_" + of + "_var", file.count("num_" + of + "_var"));
+    const std::vector<std::int64_t> table = read_table(reading_, of, count, family_.variables.size());
     (void)file.claimed(
         "the records of " + prefix, count,
         sizeof(SetRecord) + family_.variables.size() * 2 * sizeof(Series));  // with memory that they own
     for (std::size_t s = 0; s < count; ++s) {
       SetRecord& set = family_.sets[s];
-      set.id = ids[s];
-      set.name = names[s];
       set.variables.resize(family_.variables.size());
       for (std::size_t v = 0; v < set.variables.size(); ++v) {
         const Variable* const variable = file.find(name_of_values(v, s + 1));
@@ -128,34 +121,9 @@ class SetReader {
   }
 
  private:
-  /// Reads the names of the family's variables. Returns the table of variables, see `read_table`.
-  std::vector<std::int64_t> read_names_of_variables() {
-    const std::string of(kind_.variable);
-    const std::size_t count = reading_.file.count("num_" + of + "_var");
-    family_.variables = reading_.take_names("name_" + of + "_var", count);
-    return read_table(reading_, of, family_.sets.size(), count);
-  }
-
   /// Returns the name of the netCDF variable with the values of variable `v` (from 0) on a set (from 1).
   [[nodiscard]] std::string name_of_values(std::size_t v, std::size_t set) const {
     return fmt::format("vals_{}_var{}{}{}", kind_.variable, v + 1, kind_.prefix, set);
-  }
-
-  /// Reads a list of numbers, which count from 1, piece by piece. Calls `take(first, numbers)` for each
-  /// piece; `first` is its place in the list.
-  template <class Take>
-  void for_numbers(const Variable& variable, const Take& take) const {
-    const NcInput& file = reading_.file;
-    const std::vector<std::size_t> shape = file.shape(variable);
-    if (shape.size() != 1) file.fail(variable.name + " is not a list", "the file may be damaged");
-    // counted twice: for the list and for the set
-    const std::size_t count = file.claimed(variable.name, file.size(variable), 2 * sizeof(Index));
-    std::vector<std::int32_t> numbers;
-    for (std::size_t first = 0; first < count; first += numbers.size()) {
-      numbers.resize(std::min(reading_.values_at_once(), count - first));
-      file.read(variable, {first}, {numbers.size()}, numbers.data());
-      take(first, numbers);
-    }
   }
 
   /// Converts a number of a list to a position from 0. Throws InputError if the item does not exist.
@@ -227,13 +195,21 @@ class SetReader {
                        "sides are counted from 1");
   }
 
-  /// Reads the entries of a list of nodes or elements. `side_numbers`: their sides, null for other sets.
+  /// Reads the entries of a list of nodes or elements, piece by piece. `side_numbers`: their sides, null for
+  /// other sets.
   [[nodiscard]] Entries read_entries(const Variable& variable, const Variable* side_numbers) const {
+    const NcInput& file = reading_.file;
     const MeshRange range = reading_.range(kind_.association);
+    if (file.shape(variable).size() != 1) file.fail(variable.name + " is not a list");
+    // counted twice: for the list and for the set
+    const std::size_t count = file.claimed(variable.name, file.size(variable), 2 * sizeof(Index));
     Entries own;
-    for_numbers(variable, [&](std::size_t first, const std::vector<std::int32_t>& numbers) {
+    std::vector<std::int32_t> numbers;
+    for (std::size_t first = 0; first < count; first += numbers.size()) {
+      numbers.resize(std::min(reading_.values_at_once(), count - first));
+      file.read(variable, {first}, {numbers.size()}, numbers.data());
       std::vector<std::int64_t> sides;
-      if (is_sides_) sides = reading_.file.integers(*side_numbers, {first}, {numbers.size()});
+      if (is_sides_) sides = file.integers(*side_numbers, {first}, {numbers.size()});
       for (std::size_t i = 0; i < numbers.size(); ++i) {
         const Index member = place_of(numbers[i], variable, first + i);
         int side = 1;
@@ -255,7 +231,7 @@ class SetReader {
         own.factors += nodes;
         own.most_nodes = std::max(own.most_nodes, nodes);
       }
-    });
+    }
     return own;
   }
 
@@ -393,13 +369,17 @@ std::string name_or_number(const std::string& name, std::size_t v) {
   return name.empty() ? "variable " + std::to_string(v + 1) : name;
 }
 
+}  // namespace
+
+void read_sets(Reading& reading) {
+  for (std::size_t kind = 0; kind < kSetKinds.size(); ++kind) SetReader(reading, kind).read();
+}
+
 void read_nodal(Reading& reading) {
   const NcInput& file = reading.file;
   ExodusMetadata& metadata = *reading.metadata;
   const auto nodes = static_cast<std::size_t>(reading.nodes);
-  const MeshRange own = reading.part.ranges.vertices;
-  const auto first = static_cast<std::size_t>(own.first);
-  const auto rows = static_cast<std::size_t>(own.size());
+  const auto [first, rows] = reading.rows(Association::vertices);
   const std::size_t count = file.count("num_nod_var");
   const std::vector<std::string> names = reading.take_names("name_nod_var", count);
   const Variable* const together = reading.take("vals_nod_var");
@@ -409,83 +389,86 @@ void read_nodal(Reading& reading) {
     Series series{.name = names[v]};
     const Variable* const variable =
         together != nullptr ? together : reading.take(fmt::format("vals_nod_var{}", v + 1));
-    const std::vector<std::size_t> shape =
-        variable == nullptr ? std::vector<std::size_t>() : file.shape(*variable);
-    const bool is_vector = together == nullptr && shape.size() == 3;  // as meshio writes them
-    if (variable != nullptr && together == nullptr) {
-      reading.require_shape(*variable, is_vector ? std::vector{metadata.steps, nodes, shape[2]}
-                                                 : std::vector{metadata.steps, nodes});
+    series.declared = {variable != nullptr};
+    std::vector<std::size_t> starts{0, first};
+    std::vector<std::size_t> counts{1, rows};
+    Index components = 1;
+    bool is_vector = false;
+    if (together != nullptr) {
+      starts = {0, v, first};
+      counts = {1, 1, rows};
+    } else if (variable != nullptr) {
+      const std::vector<std::size_t> shape = file.shape(*variable);
+      std::vector<std::size_t> expected{metadata.steps, nodes};
+      is_vector = shape.size() == 3;  // as meshio writes them
+      if (is_vector) {
+        for (auto* const list : {&expected, &counts}) list->push_back(shape[2]);
+        starts.push_back(0);
+        components = static_cast<Index>(shape[2]);
+      }
+      reading.require_shape(*variable, expected);
     }
     if (variable != nullptr) series.type = variable->type;
-    series.declared = {variable != nullptr};
-    for (std::size_t step = 0; variable != nullptr && step < metadata.steps; ++step) {
-      const Values values = together != nullptr ? file.values(*together, {step, v, first}, {1, 1, rows})
-                            : is_vector ? file.values(*variable, {step, first, 0}, {1, rows, shape[2]})
-                                        : file.values(*variable, {step, first}, {1, rows});
+    for (std::size_t& step = starts.front(); variable != nullptr && step < metadata.steps; ++step) {
       const std::string name = name_of_step(name_or_number(names[v], v), step, metadata.steps);
-      series.arrays.push_back(reading.add_array({.name = name,
-                                                 .components = is_vector ? static_cast<Index>(shape[2]) : 1,
-                                                 .values = as_labels(name, values)}));
+      series.arrays.push_back(
+          reading.add_array({.name = name,
+                             .components = components,
+                             .values = as_labels(name, file.values(*variable, starts, counts))}));
     }
     // a vector gets no series: it is written as scalar variables, the only variables of the format
     if (!is_vector) metadata.nodal.push_back(std::move(series));
   }
 }
 
-/// A variable of elements, and the blocks that have values of it.
+namespace {
+
+/// The netCDF variables with the values of a variable of elements, for the blocks that have elements.
 struct ElementVariable {
-  std::string name;
-  std::vector<const Variable*> of_block;  ///< null for blocks without values
-  Index rows = 0;                         ///< elements with values, in the whole mesh
-  bool is_of_one_type = true;             ///< whether all blocks with elements have the same type
-  std::vector<Index> indices;             ///< cells with values in the range that is read
+  std::vector<std::size_t> blocks;
+  std::vector<const Variable*> of_block;
+  bool is_of_one_type = true;
 };
 
-/// Returns the values of an element variable at a step; as real numbers if blocks have different types.
-/// `keeps_digits` becomes false if real numbers cannot hold the values exactly.
-Values values_at(const Reading& reading, const ElementVariable& variable, NcType type, std::size_t step,
-                 bool& keeps_digits) {
-  std::optional<Values> result;
-  for (std::size_t b = 0; b < variable.of_block.size(); ++b) {
-    if (variable.of_block[b] == nullptr || reading.block_ends[b] == reading.block_ends[b + 1]) continue;
-    const MeshRange own = reading.own_of_block(b);
-    const auto first = static_cast<std::size_t>(own.first - reading.block_ends[b]);
-    Values values =
-        reading.file.values(*variable.of_block[b], {step, first}, {1, static_cast<std::size_t>(own.size())});
-    keeps_digits = keeps_digits && (type != kDouble || can_hold(kDouble, values));
-    if (!variable.is_of_one_type) values = as_reals(values);
-    if (!result) {
-      result = std::move(values);
-      continue;
-    }
-    append_values(*result, std::move(values));
-  }
-  return result ? *std::move(result) : Values();
-}
-
-/// Finds the netCDF variables with the values of element variable `v`, and fills in its series.
+/// Finds the values of variable `v` of elements, and fills in its series. `table`: see `read_table`.
 ElementVariable find_element_variable(Reading& reading, std::size_t v, const std::vector<std::int64_t>& table,
                                       std::size_t count, Series& series) {
-  const std::size_t blocks = reading.metadata->blocks.size();
-  ElementVariable result{.name = name_or_number(series.name, v), .of_block = {}, .indices = {}};
-  NcType first_type = 0;
-  for (std::size_t b = 0; b < blocks; ++b) {
+  ElementVariable result;
+  for (std::size_t b = 0; b < reading.metadata->blocks.size(); ++b) {
     const Variable* const variable = reading.take(fmt::format("vals_elem_var{}eb{}", v + 1, b + 1));
-    result.of_block.push_back(variable);
     series.declared.push_back(variable != nullptr);
     series.present.push_back(table.empty() ? variable != nullptr : table[b * count + v] != 0);
     if (variable == nullptr) continue;
-    const Index elements = reading.block_ends[b + 1] - reading.block_ends[b];
-    reading.require_shape(*variable, {reading.metadata->steps, static_cast<std::size_t>(elements)});
-    series.type = result.rows == 0 || series.type == variable->type ? variable->type : kDouble;
-    if (elements > 0 && result.rows == 0) first_type = variable->type;
-    result.is_of_one_type = result.is_of_one_type && (elements == 0 || variable->type == first_type);
-    result.rows += elements;
-    const MeshRange own = reading.own_of_block(b);
-    for (Index c = own.first; c < own.end; ++c) result.indices.push_back(c - reading.part.ranges.cells.first);
+    reading.require_shape(*variable, {reading.metadata->steps, reading.size_of_block(b)});
+    series.type = result.blocks.empty() || series.type == variable->type ? variable->type : kDouble;
+    if (reading.size_of_block(b) == 0) continue;
+    result.blocks.push_back(b);
+    result.of_block.push_back(variable);
+    result.is_of_one_type = result.is_of_one_type && variable->type == result.of_block.front()->type;
   }
   return result;
 }
+
+/// Returns the values of a variable of elements at a step; as real numbers if blocks have different types.
+/// `keeps_digits` becomes false if real numbers cannot hold the values exactly.
+Values values_at(const Reading& reading, const ElementVariable& variable, NcType type, std::size_t step,
+                 bool& keeps_digits) {
+  Values result;
+  for (std::size_t i = 0; i < variable.blocks.size(); ++i) {
+    const auto [first, rows] = reading.rows_of_block(variable.blocks[i]);
+    Values values = reading.file.values(*variable.of_block[i], {step, first}, {1, rows});
+    keeps_digits = keeps_digits && (type != kDouble || can_hold(kDouble, values));
+    if (!variable.is_of_one_type) values = as_reals(values);
+    if (i == 0) {
+      result = std::move(values);
+    } else {
+      append_values(result, std::move(values));
+    }
+  }
+  return result;
+}
+
+}  // namespace
 
 void read_elemental(Reading& reading) {
   const NcInput& file = reading.file;
@@ -497,35 +480,22 @@ void read_elemental(Reading& reading) {
   const std::vector<std::int64_t> table = read_table(reading, "elem", blocks, count);
   for (std::size_t v = 0; v < count; ++v) {
     Series series{.name = names[v]};
+    const std::string name = name_or_number(series.name, v);
     const ElementVariable variable = find_element_variable(reading, v, table, count, series);
     bool keeps_digits = true;
-    const bool is_partial = variable.rows != reading.elements;
-    for (std::size_t step = 0; step < metadata.steps && variable.rows > 0; ++step) {
-      DataArray array{.name = name_of_step(variable.name, step, metadata.steps),
-                      .association = Association::cells};
-      array.values = as_labels(array.name, values_at(reading, variable, series.type, step, keeps_digits));
-      if (is_partial) array.indices = variable.indices;
-      series.arrays.push_back(reading.add_array(std::move(array), {is_partial}));
+    for (std::size_t step = 0; step < metadata.steps && !variable.blocks.empty(); ++step) {
+      const std::string of_step = name_of_step(name, step, metadata.steps);
+      Values values = as_labels(of_step, values_at(reading, variable, series.type, step, keeps_digits));
+      series.arrays.push_back(reading.add_array(of_step, std::move(values), variable.blocks));
     }
     if (!keeps_digits) {
       reading.notes.push_back(fmt::format(
           "the variable '{}' loses digits: its blocks have whole and real numbers, which become real "
           "numbers of 53 bits",
-          variable.name));
+          name));
     }
     metadata.elements.push_back(std::move(series));
   }
-}
-
-}  // namespace
-
-void read_sets(Reading& reading) {
-  for (std::size_t kind = 0; kind < kSetKinds.size(); ++kind) SetReader(reading, kind).read();
-}
-
-void read_variables(Reading& reading) {
-  read_nodal(reading);
-  read_elemental(reading);
 }
 
 }  // namespace meshorder::exodus

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 // Writes a file: points, numbers, maps and variables that are kept as they are. Other source files write
@@ -46,9 +47,8 @@ const DataArray* Planning::take_column(std::string_view name, Association associ
 NcSink Writing::declare(const std::string& variable, NcType type, const std::vector<std::string>& dimensions,
                         std::vector<Attribute> attributes) {
   const auto kept = metadata.variable_attributes.find(variable);
-  if (kept != metadata.variable_attributes.end()) {
+  if (kept != metadata.variable_attributes.end())
     attributes.insert(attributes.end(), kept->second.begin(), kept->second.end());
-  }
   return file.variable(variable, type, dimensions, attributes);
 }
 
@@ -108,10 +108,6 @@ std::vector<std::int64_t> whole_values(const Values& values) {
 
 namespace {
 
-const ExodusMetadata* own_metadata(const Mesh& mesh) {
-  return dynamic_cast<const ExodusMetadata*>(mesh.format_metadata.get());
-}
-
 Attribute integer_attribute(std::string name, std::int32_t value) {
   return number_attribute(std::move(name), kInt, value);
 }
@@ -152,26 +148,21 @@ void write_points(Writing& writing, int dimension) {
   if (mesh.points.empty()) return;
   const bool are_floats = writing.metadata.coordinate_type == kFloat && are_float_points(mesh.points);
   const NcType type = are_floats ? kFloat : kDouble;
-  const auto put_axis = [&mesh](const NcSink& sink, std::size_t k, bool packed) {
-    in_parts(mesh.vertex_count(), [&](Index first, Index rows) {
-      std::vector<double> values(static_cast<std::size_t>(rows));
-      for (Index v = 0; v < rows; ++v) values[v] = mesh.points[first + v][k];
-      const auto start = static_cast<std::size_t>(first);
-      sink.part(packed ? std::vector{k, start} : std::vector{start},
-                packed ? std::vector{std::size_t{1}, values.size()} : std::vector{values.size()}, values);
+  std::optional<NcSink> together;
+  if (writing.metadata.packs_coordinates)
+    together.emplace(writing.declare("coord", type, {"num_dim", "num_nodes"}));
+  for (std::size_t k = 0; k < static_cast<std::size_t>(dimension); ++k) {
+    const NcSink sink =
+        together ? *together : writing.declare(std::string("coord") + "xyz" [k], type, { "num_nodes" });
+    file.later([sink, k, &mesh, packed = together.has_value()] {
+      in_parts(mesh.vertex_count(), [&](Index first, Index rows) {
+        std::vector<double> values(static_cast<std::size_t>(rows));
+        for (Index v = 0; v < rows; ++v) values[v] = mesh.points[first + v][k];
+        const auto start = static_cast<std::size_t>(first);
+        sink.part(packed ? std::vector{k, start} : std::vector{start},
+                  packed ? std::vector{std::size_t{1}, values.size()} : std::vector{values.size()}, values);
+      });
     });
-  };
-  const auto axes = static_cast<std::size_t>(dimension);
-  if (writing.metadata.packs_coordinates) {
-    const NcSink sink = writing.declare("coord", type, {"num_dim", "num_nodes"});
-    file.later([=] {
-      for (std::size_t k = 0; k < axes; ++k) put_axis(sink, k, true);
-    });
-    return;
-  }
-  for (std::size_t k = 0; k < axes; ++k) {
-    const NcSink sink = writing.declare(std::string("coord") + "xyz" [k], type, { "num_nodes" });
-    file.later([=] { put_axis(sink, k, false); });
   }
 }
 
@@ -314,15 +305,13 @@ void write_plain(Writing& writing) {
   }
 }
 
-/// Returns the length of rows in tables of names: the length of the longest name with its zero byte, at most
-/// 256, or the length in the file that the mesh came from if that is larger. Notes names that change.
-std::size_t length_of_names(const Writing& writing, const std::vector<std::string>& names) {
-  std::size_t longest = writing.metadata.name_length;
+/// Returns the length of the longest name, at most `kLongestName`. Notes names that change.
+std::size_t longest_of(const Writing& writing, const std::vector<std::string>& names) {
+  std::size_t longest = 0;
   for (const std::string& name : names) {
-    longest = std::max(longest, std::min(name.size(), kLongestName) + 1);
-    if (const std::string held = held_name(name); held != name) {
+    longest = std::max(longest, std::min(name.size(), kLongestName));
+    if (const std::string held = held_name(name); held != name)
       writing.notes.push_back(fmt::format("the name '{}' is written as '{}'", name, held));
-    }
   }
   return longest;
 }
@@ -332,9 +321,7 @@ void add_names(const Columns& columns, std::vector<std::string>& names) {
 }
 
 /// Writes the attributes of the file. Raises maximum_name_length to the longest name.
-void write_attributes_of_file(Writing& writing, const std::vector<std::string>& names) {
-  std::size_t longest = 0;
-  for (const std::string& name : names) longest = std::max(longest, std::min(name.size(), kLongestName));
+void write_attributes_of_file(Writing& writing, std::size_t longest) {
   for (Attribute attribute : writing.metadata.attributes) {
     if (attribute.name == "maximum_name_length" && attribute.type == kInt && attribute.count == 1) {
       std::int32_t length = 0;
@@ -417,11 +404,12 @@ void write_to(const Target& target, const Mesh& mesh, Notes& notes) {
   for (const auto* series : {&nodal, &elemental}) {
     for (const SeriesPlan& one : *series) names.push_back(one.name);
   }
-  metadata.name_length = length_of_names(writing, names);
+  const std::size_t longest = longest_of(writing, names);
+  metadata.name_length = std::max(metadata.name_length, longest + 1);  // with a zero byte
 
   // declare the dimensions and variables
   const int dimension = coordinates_of(mesh.points, metadata.coordinates);
-  write_attributes_of_file(writing, names);
+  write_attributes_of_file(writing, longest);
   file.dimension({"time_step", writing.steps, metadata.steps_unlimited || writing.steps == 0});
   file.dimension({"len_name", metadata.name_length});
   file.dimension({"num_dim", static_cast<std::size_t>(dimension)});

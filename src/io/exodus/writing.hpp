@@ -36,7 +36,7 @@ struct Planning {
   /// As `take`, for an array of one component; null for other arrays.
   const DataArray* take_column(std::string_view name, Association association);
   /// Returns the block of a cell; `blocks` must be known. O(log blocks).
-  [[nodiscard]] const BlockPlan& block_of(Index cell) const;
+  [[nodiscard]] BlockPlan& block_of(Index cell);
 
   const Mesh& mesh;
   const ExodusMetadata& metadata;
@@ -113,9 +113,8 @@ inline constexpr Index kRowsAtOnce = 1 << 16;
 /// Divides `count` rows into parts and calls `put(first, rows)` for each. This keeps copies of values small.
 template <class Put>
 void in_parts(Index count, const Put& put) {
-  for (Index first = 0; first < count; first += std::min(kRowsAtOnce, count - first)) {
+  for (Index first = 0; first < count; first += std::min(kRowsAtOnce, count - first))
     put(first, std::min(kRowsAtOnce, count - first));
-  }
 }
 
 /// Attributes of elements or nodes: their names and arrays.
