@@ -18,22 +18,14 @@ namespace meshorder::command {
 namespace fs = std::filesystem;
 namespace {
 
-/// Removes a dot and digits from the beginning; returns whether they were there.
-bool take_number(std::string_view& text) {
-  const std::size_t end = std::min(text.find_first_not_of("0123456789", 1), text.size());
-  if (!text.starts_with('.') || end < 2) return false;
-  text.remove_prefix(end);
-  return true;
-}
-
-/// Returns whether a file has the name of a piece: `name` and two numbers.
+/// Returns whether a file has the name of a piece: `name` and two numbers, each after a dot.
 bool has_name_of_nemesis_piece(std::string_view file, std::string_view name) {
+  constexpr std::string_view kDigits = "0123456789";
   if (!file.starts_with(name)) return false;
-  file.remove_prefix(name.size());
-  for (int numbers = 0; numbers < 2; ++numbers) {
-    if (!take_number(file)) return false;
-  }
-  return file.empty();
+  const std::string_view rest = file.substr(name.size());
+  const std::size_t dot = rest.find('.', 1);
+  return rest.starts_with('.') && dot > 1 && rest.find_first_not_of(kDigits, 1) == dot &&
+         dot + 1 < rest.size() && rest.find_first_not_of(kDigits, dot + 1) == std::string_view::npos;
 }
 
 }  // namespace

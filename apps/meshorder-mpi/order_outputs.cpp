@@ -104,24 +104,19 @@ void OrderOutputs::write(const distributed::FileSlices& slices, const distribute
 
 void OrderOutputs::write(const distributed::ExodusSlices& slices, const distributed::DistributedOrder& order,
                          const MeshChecksums& before, Notes& notes) {
-  std::optional<distributed::MovedPart> moved(
-      std::in_place, communicator_, slices.read_part(communicator_, notes), order,
+  distributed::MovedPart moved(
+      communicator_, slices.read_part(communicator_, notes), order,
       files_.has_nemesis_pieces() ? slices.block_ends() : std::vector<distributed::GlobalIndex>(), notes);
   if (!files_.maps.empty()) {
-    maps_ = write_sliced_maps(
-        communicator_,
-        {order.new_vertices, moved->new_places(Association::cells), order.report.part_starts,
-         moved->ids(Association::vertices), moved->ids(Association::cells)},
-        before, moved->slice(), files_.maps, set_);
+    maps_ =
+        write_sliced_maps(communicator_,
+                          {order.new_vertices, moved.new_places(Association::cells), order.report.part_starts,
+                           moved.ids(Association::vertices), moved.ids(Association::cells)},
+                          before, moved.slice(), files_.maps, set_);
   }
-  if (files_.has_nemesis_pieces()) {
-    const distributed::NemesisShare share =
-        nemesis_share(communicator_, *moved, slices.block_ends(), order.report.part_starts);
-    moved.reset();
-    return write_nemesis(share, order.report);
-  }
+  if (files_.has_nemesis_pieces()) return write_nemesis(std::move(moved), slices, order.report);
   Notes of_pieces;
-  distributed::MovedGrid grid(communicator_, *moved);
+  distributed::MovedGrid grid(communicator_, moved);
   write_pieces(grid.rows(of_pieces), order.report, notes);
   add_new(of_pieces, notes);
 }
@@ -150,14 +145,14 @@ void OrderOutputs::write_nemesis(const MeshToOrder& whole, const distributed::Di
   });
 }
 
-void OrderOutputs::write_nemesis(const distributed::NemesisShare& share,
+void OrderOutputs::write_nemesis(distributed::MovedPart moved, const distributed::ExodusSlices& slices,
                                  const distributed::DistributedReport& report) {
   const std::vector<std::string> paths =
       communicator_.broadcast(communicator_.at_root([&] { return nemesis_->open(report.parts); }));
   const std::vector<std::string> names =
       communicator_.broadcast(nemesis_ ? nemesis_->names() : std::vector<std::string>{});
-  pieces_report_.ghost_vertices =
-      distributed::write_nemesis_pieces(communicator_, share, report.part_starts, paths, names);
+  pieces_report_.ghost_vertices = distributed::write_nemesis_pieces(
+      communicator_, std::move(moved), slices.block_ends(), report.part_starts, paths, names);
   communicator_.at_root([&] { nemesis_->add_to(set_); });
 }
 

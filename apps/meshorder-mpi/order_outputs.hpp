@@ -83,7 +83,8 @@ class OrderOutputs {
   void write_pieces(const distributed::GridRows& grid, const distributed::DistributedReport& report,
                     Notes& notes);
   void write_nemesis(const MeshToOrder& whole, const distributed::DistributedReport& report, Notes& notes);
-  void write_nemesis(const distributed::NemesisShare& share, const distributed::DistributedReport& report);
+  void write_nemesis(distributed::MovedPart moved, const distributed::ExodusSlices& slices,
+                     const distributed::DistributedReport& report);
   /// Throws InputError, at the root, if there are losses but --strict forbids them.
   void refuse_losses(const Notes& losses) const;
 

@@ -19,11 +19,6 @@ namespace meshorder::distributed {
 #ifdef MESHORDER_HAS_NETCDF
 namespace {
 
-/// Returns whether Nemesis pieces can keep the blocks of a file.
-bool are_blocks_of_pieces(const exodus::Header& header) {
-  return !header.is_piece && header.blocks.size() <= kMostBlocks;
-}
-
 /// Returns the number of vertices of a file, whether pieces can keep its blocks (1 or 0), and the ends of the
 /// blocks; nothing for a file that the ranks cannot read together.
 std::vector<GlobalIndex> counts_of(const std::string& path) {
@@ -43,17 +38,10 @@ std::vector<GlobalIndex> counts_of(const std::string& path) {
   const bool have_types = std::find(header.element_variables.begin(), header.element_variables.end(),
                                     vtk::kCellTypes) != header.element_variables.end();
   if (!are_held || have_types || header.vertices == 0 || header.cells == 0) return {};
-  std::vector<GlobalIndex> counts{header.vertices, are_blocks_of_pieces(header) ? 1 : 0};
+  const bool are_blocks_of_pieces = !header.is_piece && header.blocks.size() <= kMostBlocks;
+  std::vector<GlobalIndex> counts{header.vertices, are_blocks_of_pieces ? 1 : 0};
   counts.insert(counts.end(), header.block_ends.begin(), header.block_ends.end());
   return counts;
-}
-
-/// Reads this rank's part of a file.
-MeshPart part_of_file(const std::string& path, const MeshRanges& ranges, exodus::PartContent content,
-                      Notes& notes) {
-  const FilePath file(path);
-  const ReadScope scope(file);
-  return exodus::read_part(file, ranges, content, notes);
 }
 
 /// Adds the notes of all ranks to those of the root, each once.
@@ -110,19 +98,21 @@ std::optional<ExodusSlices> ExodusSlices::open(const Communicator& communicator,
   return slices;
 }
 
-MeshRanges ExodusSlices::ranges_of(int rank) const {
-  const auto range = [rank](const Layout& layout) {
+MeshPart ExodusSlices::own_part(const Communicator& communicator, bool with_data, Notes& notes) const {
+  const auto range = [rank = communicator.rank()](const Layout& layout) {
     return MeshRange{static_cast<Index>(layout.begin(rank)), static_cast<Index>(layout.end(rank))};
   };
-  return {range(vertices_), range(cells_)};
+  const FilePath file(path_);
+  const ReadScope scope(file);
+  return exodus::read_part(file, {range(vertices_), range(cells_)},
+                           with_data ? exodus::PartContent::all : exodus::PartContent::points_and_cells,
+                           notes);
 }
 
 MeshSlice ExodusSlices::read(const Communicator& communicator) const {
   return communicator.together([&] {
     Notes ignored;
-    MeshPart part =
-        part_of_file(path_, ranges_of(communicator.rank()), exodus::PartContent::points_and_cells, ignored);
-    Mesh& mesh = part.mesh;
+    Mesh mesh = own_part(communicator, false, ignored).mesh;
     MeshSlice slice;
     slice.vertices = vertices_;
     slice.cells = cells_;
@@ -136,8 +126,7 @@ MeshSlice ExodusSlices::read(const Communicator& communicator) const {
 
 MeshPart ExodusSlices::read_part(const Communicator& communicator, Notes& notes) const {
   Notes own;
-  MeshPart part = communicator.together(
-      [&] { return part_of_file(path_, ranges_of(communicator.rank()), exodus::PartContent::all, own); });
+  MeshPart part = communicator.together([&] { return own_part(communicator, true, own); });
   gather_notes(communicator, own, notes);
   note_degenerate(communicator, part, notes);
   return part;
@@ -147,7 +136,6 @@ std::optional<ExodusSlices> ExodusSlices::open(const Communicator& /*communicato
                                                const std::string& /*path*/) {
   return std::nullopt;
 }
-MeshRanges ExodusSlices::ranges_of(int /*rank*/) const { return {}; }
 MeshSlice ExodusSlices::read(const Communicator& /*communicator*/) const { return {}; }
 MeshPart ExodusSlices::read_part(const Communicator& /*communicator*/, Notes& /*notes*/) const { return {}; }
 #endif

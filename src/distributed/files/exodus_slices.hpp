@@ -50,7 +50,8 @@ class ExodusSlices {
   [[nodiscard]] MeshPart read_part(const Communicator& communicator, Notes& notes) const;
 
  private:
-  [[nodiscard]] MeshRanges ranges_of(int rank) const;
+  /// Reads this rank's points and cells, and their data if `with_data`.
+  [[nodiscard]] MeshPart own_part(const Communicator& communicator, bool with_data, Notes& notes) const;
 
   std::string path_;
   Layout vertices_;

@@ -20,6 +20,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string_view>
@@ -42,31 +43,26 @@ using exodus::SetRecord;
 constexpr std::string_view kMark = "pieces_written_by";
 constexpr std::string_view kMaker = "meshorder";
 
-const ExodusMetadata* exodus_metadata(const Mesh& mesh) {
-  return dynamic_cast<const ExodusMetadata*>(mesh.format_metadata.get());
-}
-
 // ---- the whole mesh as an Exodus II file
 
 /// Returns whether the metadata name all sets of the mesh, and the mesh has all sets and arrays that they
 /// name.
 bool knows_all(const Mesh& mesh, const ExodusMetadata& metadata) {
   const NamedParts parts(mesh);
-  const auto has_set = [&](const SetRecord& record, Association association) {
-    return parts.set(record.in_mesh, association) != nullptr;
-  };
   const auto has_array = [&](const std::string& name) {
     return parts.array(name, Association::cells) != nullptr;
   };
   std::size_t known = 0;  // sets, and blocks with a name
   for (const BlockRecord& block : metadata.blocks) known += block.in_mesh.empty() ? 0 : 1;
   for (std::size_t kind = 0; kind < metadata.sets.size(); ++kind) {
-    const Association association = exodus::kSetKinds[kind].association;
     for (const SetRecord& record : metadata.sets[kind].sets) {
-      const bool is_there = kind != exodus::kSideSets ? has_set(record, association)
-                                                      : record.in_mesh.empty() || has_array(record.in_mesh);
-      if (!is_there) return false;
-      known += kind != exodus::kSideSets ? 1 : 0;
+      if (kind == exodus::kSideSets) {
+        if (!record.in_mesh.empty() && !has_array(record.in_mesh)) return false;
+      } else if (parts.set(record.in_mesh, exodus::kSetKinds[kind].association) == nullptr) {
+        return false;
+      } else {
+        ++known;
+      }
     }
   }
   return known == mesh.sets.size() &&
@@ -76,11 +72,6 @@ bool knows_all(const Mesh& mesh, const ExodusMetadata& metadata) {
 }
 
 // ---- data that only pieces have
-
-/// Adds a dimension unless its length is 0: netCDF would make that an unlimited dimension.
-void add_dimension(ExodusMetadata& metadata, std::string_view name, std::size_t length) {
-  if (length > 0) metadata.dimensions.push_back({std::string(name), length});
-}
 
 /// Adds integers along a dimension, or one integer if `dimension` is empty; nothing without values.
 void add_integers(ExodusMetadata& metadata, std::string_view name, std::string_view dimension,
@@ -125,7 +116,7 @@ void add_maps(ExodusMetadata& metadata, const std::string& of,
 /// Returns the counts of members and of distribution factors of each set of nodes, then those of each set of
 /// sides.
 std::vector<std::int64_t> counts_of_sets(const Mesh& mesh) {
-  const ExodusMetadata& metadata = *exodus_metadata(mesh);
+  const ExodusMetadata& metadata = *exodus::own_metadata(mesh);
   Notes ignored;
   exodus::Planning planning{mesh, metadata, ignored};
   exodus::plan_blocks(planning, true);
@@ -175,7 +166,7 @@ struct Blocks {
 /// order of these blocks.
 Blocks blocks_of(const Mesh& mesh) {
   Notes ignored;
-  exodus::Planning planning{mesh, *exodus_metadata(mesh), ignored};
+  exodus::Planning planning{mesh, *exodus::own_metadata(mesh), ignored};
   exodus::plan_blocks(planning, true);
   Blocks blocks;
   for (const auto& [cells, record, id, name] : planning.blocks) {
@@ -220,7 +211,7 @@ class NemesisPieces {
                 const std::vector<GlobalIndex>& part_starts)
       : communicator_(communicator),
         source_(std::move(source)),
-        metadata_(*exodus_metadata(source_.mesh)),
+        metadata_(*exodus::own_metadata(source_.mesh)),
         parts_(communicator, source_.mesh, source_.numbers, part_starts),
         borders_(facets_between(communicator, source_.mesh, source_.numbers, parts_)),
         cutter_(source_.mesh, parts_) {
@@ -249,10 +240,11 @@ class NemesisPieces {
  private:
   /// Fills in `whole_`.
   void count_whole() {
-    whole_.dimensions = {{"num_processors", static_cast<std::size_t>(parts_.size())}, {"num_procs_file", 1}};
     const Blocks& blocks = source_.blocks;
-    add_dimension(whole_, "num_nodes_global", static_cast<std::size_t>(source_.numbers.layout.size()));
-    add_dimension(whole_, "num_elems_global", static_cast<std::size_t>(blocks.ends.back()));
+    whole_.dimensions = {{"num_processors", static_cast<std::size_t>(parts_.size())},
+                         {"num_procs_file", 1},
+                         {"num_nodes_global", static_cast<std::size_t>(source_.numbers.layout.size())},
+                         {"num_elems_global", static_cast<std::size_t>(blocks.ends.back())}};
     add_integers(whole_, "nem_ftype", "", {0});  // 'p', parallel
     std::vector<std::int64_t> ids;
     std::vector<std::int64_t> counts;
@@ -436,53 +428,41 @@ Held held(const Mesh& mesh, Notes& notes) {
   return {exodus::read(FilePath("the pieces", store), ignored), std::move(given_cells)};
 }
 
-/// Writes the pieces of a mesh in the form of an Exodus II file.
-///
-/// @param element_numbers  of its cells in the whole mesh's file
-GlobalIndex write_held(const Mesh& mesh, const ShareNumbers& numbers,
-                       const std::vector<GlobalIndex>& element_numbers,
-                       const std::vector<GlobalIndex>& part_starts, const std::vector<std::string>& paths,
-                       const std::vector<std::string>& names) {
-  Blocks blocks = blocks_of(mesh);
-  if (blocks.records.empty())
-    throw TooLarge("pieces of Exodus II have up to 10,000 blocks of elements; give a folder for .vtu pieces");
-  const Communicator alone(MPI_COMM_SELF);
-  NemesisPieces pieces(alone,
-                       {mesh, numbers, element_numbers, std::move(blocks), counts_of_sets(mesh),
-                        !mesh.vertex_ids.empty(), !mesh.cell_ids.empty()},
-                       part_starts);
-  return pieces.write(paths, names);
-}
-
 }  // namespace
 
 GlobalIndex write_nemesis_pieces(const Mesh& mesh, const std::vector<GlobalIndex>& part_starts,
                                  const std::vector<std::string>& paths, const std::vector<std::string>& names,
                                  Notes& notes) {
   const ShareNumbers numbers = ShareNumbers::of_whole(mesh);
-  const ExodusMetadata* const own = exodus_metadata(mesh);
-  if (own != nullptr && !blocks_of(mesh).records.empty() && knows_all(mesh, *own))
-    return write_held(mesh, numbers, numbers.cells, part_starts, paths, names);
-  const Held as_held = held(mesh, notes);
-  return write_held(as_held.mesh, numbers, as_held.given_cells, part_starts, paths, names);
+  const ExodusMetadata* const own = exodus::own_metadata(mesh);
+  std::optional<Held> other;  // if the mesh is not in the form of an Exodus II file
+  if (own == nullptr || blocks_of(mesh).records.empty() || !knows_all(mesh, *own)) other = held(mesh, notes);
+  const Mesh& source = other ? other->mesh : mesh;
+  Blocks blocks = blocks_of(source);
+  if (blocks.records.empty())
+    throw TooLarge("pieces of Exodus II have up to 10,000 blocks of elements; give a folder for .vtu pieces");
+  const Communicator alone(MPI_COMM_SELF);
+  NemesisPieces pieces(alone,
+                       {source, numbers, other ? other->given_cells : numbers.cells, std::move(blocks),
+                        counts_of_sets(source), !source.vertex_ids.empty(), !source.cell_ids.empty()},
+                       part_starts);
+  return pieces.write(paths, names);
 }
 
-NemesisShare nemesis_share(const Communicator& communicator, const MovedPart& moved,
-                           const std::vector<GlobalIndex>& block_ends,
-                           const std::vector<GlobalIndex>& part_starts) {
-  const Mesh& part = moved.part().mesh;
-  std::vector<std::int64_t> counts = communicator.together([&] { return counts_of_sets(part); });
-  return {share_of(communicator, moved, part_starts), block_ends, communicator.sums(std::move(counts))};
-}
-
-GlobalIndex write_nemesis_pieces(const Communicator& communicator, const NemesisShare& share,
+GlobalIndex write_nemesis_pieces(const Communicator& communicator, MovedPart moved,
+                                 const std::vector<GlobalIndex>& block_ends,
                                  const std::vector<GlobalIndex>& part_starts,
                                  const std::vector<std::string>& paths,
                                  const std::vector<std::string>& names) {
-  const auto& [mesh, numbers, has_vertex_ids, has_cell_ids] = share.share;
+  std::vector<std::int64_t> counts = communicator.together([&] { return counts_of_sets(moved.part().mesh); });
+  const auto take_share = [&] {
+    const MovedPart freed = std::move(moved);
+    return share_of(communicator, freed, part_starts);
+  };
+  const auto& [mesh, numbers, has_vertex_ids, has_cell_ids] = take_share();
   NemesisPieces pieces(communicator,
-                       {mesh, numbers, numbers.cells, blocks_of(*exodus_metadata(mesh), share.block_ends),
-                        share.set_counts, has_vertex_ids, has_cell_ids},
+                       {mesh, numbers, numbers.cells, blocks_of(*exodus::own_metadata(mesh), block_ends),
+                        communicator.sums(std::move(counts)), has_vertex_ids, has_cell_ids},
                        part_starts);
   return pieces.write(paths, names);
 }
@@ -508,13 +488,8 @@ GlobalIndex write_nemesis_pieces(const Mesh& /*mesh*/, const std::vector<GlobalI
   throw Unavailable("pieces of Exodus II need netCDF, which this build of meshorder lacks");
 }
 
-NemesisShare nemesis_share(const Communicator& /*communicator*/, const MovedPart& /*moved*/,
-                           const std::vector<GlobalIndex>& /*block_ends*/,
-                           const std::vector<GlobalIndex>& /*part_starts*/) {
-  return {};
-}
-
-GlobalIndex write_nemesis_pieces(const Communicator& /*communicator*/, const NemesisShare& /*share*/,
+GlobalIndex write_nemesis_pieces(const Communicator& /*communicator*/, MovedPart /*moved*/,
+                                 const std::vector<GlobalIndex>& /*block_ends*/,
                                  const std::vector<GlobalIndex>& /*part_starts*/,
                                  const std::vector<std::string>& /*paths*/,
                                  const std::vector<std::string>& /*names*/) {

@@ -3,12 +3,10 @@
 
 #include "distributed/comm/communicator.hpp"
 #include "distributed/comm/layout.hpp"
-#include "distributed/files/mesh_share.hpp"
 #include "distributed/files/moved_part.hpp"
 #include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -35,27 +33,14 @@ GlobalIndex write_nemesis_pieces(const Mesh& mesh, const std::vector<GlobalIndex
                                  const std::vector<std::string>& paths, const std::vector<std::string>& names,
                                  Notes& notes);
 
-/// A rank's share of a mesh from an Exodus II file. All ranks write pieces of the mesh.
-struct NemesisShare {
-  MeshShare share;
-  std::vector<GlobalIndex> block_ends;   ///< as in `places_by_block`
-  std::vector<std::int64_t> set_counts;  ///< members and distribution factors of the sets of the whole mesh
-};
-
-/// Returns the share of this rank. Every rank has to call it. O(size of the part + size of the share · log).
+/// As above, for a mesh from an Exodus II file of which each rank has a part; each rank writes the pieces of
+/// its own parts. Every rank has to call it. O(size of the part + size of the share · log).
 ///
 /// @param moved       in its new order by blocks
-/// @param block_ends  of the file
-/// @throws as `Communicator::exchange`
-[[nodiscard]] NemesisShare nemesis_share(const Communicator& communicator, const MovedPart& moved,
-                                         const std::vector<GlobalIndex>& block_ends,
-                                         const std::vector<GlobalIndex>& part_starts);
-
-/// Writes the parts as the first function does; each rank writes its own. Every rank has to call it. O(size
-/// of the share · log).
-///
-/// @throws SharedError if a file cannot be written
-GlobalIndex write_nemesis_pieces(const Communicator& communicator, const NemesisShare& share,
+/// @param block_ends  of the file, as in `places_by_block`
+/// @throws SharedError if a file cannot be written; and as `Communicator::exchange`
+GlobalIndex write_nemesis_pieces(const Communicator& communicator, MovedPart moved,
+                                 const std::vector<GlobalIndex>& block_ends,
                                  const std::vector<GlobalIndex>& part_starts,
                                  const std::vector<std::string>& paths,
                                  const std::vector<std::string>& names);
