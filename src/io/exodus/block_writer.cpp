@@ -141,7 +141,7 @@ Columns attributes_of(Planning& planning, const BlockPlan& block) {
   if (block.record != nullptr) {
     for (const auto& [name, array] : block.record->attributes) {
       if (const DataArray* const found = planning.take_column(array, Association::cells))
-        columns.emplace_back(name, found);
+        columns.push_back({name, found});
     }
     return columns;
   }
@@ -152,7 +152,7 @@ Columns attributes_of(Planning& planning, const BlockPlan& block) {
     planning.placed.insert(&array);
     const std::vector<double> values = values_in(planning.mesh, block.cells, array, std::nan(""));
     if (std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); }))
-      columns.emplace_back(array.name.substr(kAttribute.size()), &array);
+      columns.push_back({array.name.substr(kAttribute.size()), &array});
   }
   return columns;
 }
@@ -182,8 +182,8 @@ void write_attributes(Writing& writing, const std::string& number, const BlockPl
   if (columns.empty()) return;
   const std::string count = "num_att_in_blk" + number;
   const bool is_single = block.record != nullptr && block.record->attribute_type == kFloat &&
-                         std::all_of(columns.begin(), columns.end(), [&](const auto& column) {
-                           return can_hold(kFloat, values_in(writing.mesh, block.cells, *column.second, 0));
+                         std::all_of(columns.begin(), columns.end(), [&](const Column& column) {
+                           return can_hold(kFloat, values_in(writing.mesh, block.cells, *column.array, 0));
                          });
   write_columns(writing, "attrib" + number, is_single ? kFloat : kDouble, {"num_el_in_blk" + number, count},
                 columns, block.cells.first, block.cells.count);

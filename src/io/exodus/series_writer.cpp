@@ -143,13 +143,6 @@ class SeriesPlanner {
   std::vector<SeriesPlan> plans_;
 };
 
-std::vector<std::string> names_of_series(const std::vector<SeriesPlan>& series) {
-  std::vector<std::string> names;
-  names.reserve(series.size());
-  for (const SeriesPlan& one : series) names.push_back(one.name);
-  return names;
-}
-
 /// Returns the type of the variable "vals_nod_var", which holds all nodal variables.
 NcType type_of_all(const std::vector<SeriesPlan>& series) {
   const NcType first = series.front().type;
@@ -211,7 +204,7 @@ void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series) {
   NcOutput& file = writing.file;
   const Mesh& mesh = writing.mesh;
   file.dimension({"num_nod_var", series.size()});
-  writing.write_names("name_nod_var", "num_nod_var", names_of_series(series));
+  writing.write_names("name_nod_var", "num_nod_var", names_of(series));
   const bool packed = writing.metadata.packs_nodal;
   if (mesh.points.empty()) return;
   const NcSink together =
@@ -238,7 +231,7 @@ void write_elemental(Writing& writing, const std::vector<SeriesPlan>& series) {
   if (series.empty()) return;
   NcOutput& file = writing.file;
   file.dimension({"num_elem_var", series.size()});
-  writing.write_names("name_elem_var", "num_elem_var", names_of_series(series));
+  writing.write_names("name_elem_var", "num_elem_var", names_of(series));
   std::vector<std::int32_t> table(writing.blocks.size() * series.size(), 0);
   for (std::size_t v = 0; v < series.size(); ++v) {
     const SeriesPlan& one = series[v];

@@ -79,7 +79,7 @@ void write_columns(Writing& writing, const std::string& variable, NcType type,
   writing.file.later([sink, columns, first, count, width, &mesh = writing.mesh] {
     std::vector<double> table(static_cast<std::size_t>(count) * width);
     for (std::size_t k = 0; k < width; ++k) {
-      const DataArray& array = *columns[k].second;
+      const DataArray& array = *columns[k].array;
       const std::vector<double> values =
           column(array, 0, rows_by_item(array, item_count(mesh, array.association)), first, count, 0.0);
       for (std::size_t i = 0; i < values.size(); ++i) table[i * width + k] = values[i];
@@ -215,16 +215,14 @@ void write_maps(Writing& writing, const std::string& of, const std::string& pref
   const std::string count = "num_" + of + "_maps";
   writing.file.dimension({count, maps.size()});
   std::vector<std::int64_t> ids;
-  std::vector<std::string> names;
   for (std::size_t m = 0; m < maps.size(); ++m) {
     ids.push_back(maps[m].id);
-    names.push_back(maps[m].name);
     if (row_count(*maps[m].array) == 0) continue;
     writing.write_integers(fmt::format("{}_map{}", of, m + 1), dimension, whole_values(maps[m].array->values),
                            {}, maps[m].type);
   }
   writing.write_integers(prefix + "_prop1", count, ids, {text_attribute("name", "ID")});
-  writing.write_names(prefix + "ap_names", count, names);
+  writing.write_names(prefix + "ap_names", count, names_of(maps));
 }
 
 /// Returns whether nodal attributes can hold an array: a number for each vertex.
@@ -238,13 +236,13 @@ Columns plan_nodal_attributes(Writing& writing) {
     const DataArray* const array = find_array(writing.mesh, of_mesh, Association::vertices);
     if (array == nullptr || !fits_nodal_attribute(*array)) continue;
     writing.placed.insert(array);
-    columns.emplace_back(name, array);
+    columns.push_back({name, array});
   }
   for (const DataArray& array : writing.mesh.data) {
     const bool is_attribute = array.association == Association::vertices &&
                               array.name.starts_with(kAttribute) && fits_nodal_attribute(array);
     if (!is_attribute || !writing.placed.insert(&array).second) continue;
-    columns.emplace_back(array.name.substr(kAttribute.size()), &array);
+    columns.push_back({array.name.substr(kAttribute.size()), &array});
   }
   return columns;
 }
@@ -316,10 +314,6 @@ std::size_t longest_of(const Writing& writing, const std::vector<std::string>& n
   return longest;
 }
 
-void add_names(const Columns& columns, std::vector<std::string>& names) {
-  for (std::string& name : names_of(columns)) names.push_back(std::move(name));
-}
-
 /// Writes the attributes of the file. Raises maximum_name_length to the longest name.
 void write_attributes_of_file(Writing& writing, std::size_t longest) {
   for (Attribute attribute : writing.metadata.attributes) {
@@ -388,22 +382,17 @@ void write_to(const Target& target, const Mesh& mesh, Notes& notes) {
                           std::any_of(elemental.begin(), elemental.end(), has_values);
   writing.steps = std::max<std::size_t>(metadata.steps, needs_step ? 1 : 0);
 
-  std::vector<std::string> names;
-  for (const BlockPlan& block : writing.blocks) names.push_back(block.name);
+  std::vector<std::string> names = names_of(writing.blocks);
   for (const Columns& columns : attributes) add_names(columns, names);
   add_names(nodal_attributes, names);
   for (std::size_t kind = 0; kind < sets.size(); ++kind) {
     if (sets[kind].empty()) continue;
-    for (const SetPlan& set : sets[kind]) names.push_back(set.name);
+    add_names(sets[kind], names);
     const std::vector<std::string>& variables = metadata.sets[kind].variables;
     names.insert(names.end(), variables.begin(), variables.end());
   }
-  for (const auto* maps : {&node_maps, &element_maps}) {
-    for (const MapPlan& map : *maps) names.push_back(map.name);
-  }
-  for (const auto* series : {&nodal, &elemental}) {
-    for (const SeriesPlan& one : *series) names.push_back(one.name);
-  }
+  for (const auto* maps : {&node_maps, &element_maps}) add_names(*maps, names);
+  for (const auto* series : {&nodal, &elemental}) add_names(*series, names);
   const std::size_t longest = longest_of(writing, names);
   metadata.name_length = std::max(metadata.name_length, longest + 1);  // with a zero byte
 

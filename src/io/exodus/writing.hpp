@@ -76,6 +76,26 @@ bool are_whole(const Values& values);
 /// Returns the values, which satisfy `are_whole`, as whole numbers.
 std::vector<std::int64_t> whole_values(const Values& values);
 
+/// An attribute of elements or nodes as it is written.
+struct Column {
+  std::string name;
+  const DataArray* array;
+};
+using Columns = std::vector<Column>;
+
+/// Appends the names of blocks, sets, attributes, maps or variables.
+template <class Plan>
+void add_names(const std::vector<Plan>& plans, std::vector<std::string>& names) {
+  for (const Plan& plan : plans) names.push_back(plan.name);
+}
+
+template <class Plan>
+std::vector<std::string> names_of(const std::vector<Plan>& plans) {
+  std::vector<std::string> names;
+  add_names(plans, names);
+  return names;
+}
+
 /// Declares the status, ids, properties and names of blocks or sets. The names of the variables begin with
 /// `prefix`, `count` is their dimension. `labels`: a property of new blocks, empty if there is none.
 template <class Plan>
@@ -84,11 +104,9 @@ void write_plans(Writing& writing, const std::string& prefix, const std::string&
                  const std::vector<std::int64_t>& labels = {}) {
   std::vector<std::int64_t> ids;
   std::vector<std::int64_t> status;
-  std::vector<std::string> names;
   for (const Plan& plan : plans) {
     ids.push_back(plan.id);
     status.push_back(plan.is_full() ? 1 : 0);
-    names.push_back(plan.name);
     has_names = has_names || !plan.name.empty();
   }
   int number = 0;
@@ -105,7 +123,7 @@ void write_plans(Writing& writing, const std::string& prefix, const std::string&
     write_property(values, properties[p]);
   }
   if (!labels.empty()) write_property(labels, kLabelProperty);
-  if (has_names) writing.write_names(prefix + "_names", count, names);
+  if (has_names) writing.write_names(prefix + "_names", count, names_of(plans));
 }
 
 inline constexpr Index kRowsAtOnce = 1 << 16;
@@ -115,16 +133,6 @@ template <class Put>
 void in_parts(Index count, const Put& put) {
   for (Index first = 0; first < count; first += std::min(kRowsAtOnce, count - first))
     put(first, std::min(kRowsAtOnce, count - first));
-}
-
-/// Attributes of elements or nodes: their names and arrays.
-using Columns = std::vector<std::pair<std::string, const DataArray*>>;
-
-/// Returns the names of attributes, in their sequence.
-inline std::vector<std::string> names_of(const Columns& columns) {
-  std::vector<std::string> names;
-  for (const auto& [name, array] : columns) names.push_back(name);
-  return names;
 }
 
 /// Returns one component of an array for `count` vertices or cells from `first` on; `missing` for each one
