@@ -320,7 +320,7 @@ class NemesisPieces {
   }
 
   /// Returns the metadata of a piece: those of the whole mesh, without the arrays that have no rows in it.
-  ExodusMetadata metadata_of(const Mesh& piece) const {
+  [[nodiscard]] ExodusMetadata metadata_of(const Mesh& piece) const {
     ExodusMetadata metadata = metadata_;
     const auto has = [&](const std::string& array) {
       return find_array(piece, array, Association::cells) != nullptr;

@@ -25,6 +25,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,8 +43,8 @@ inline constexpr std::string_view kLabelProperty = kLabel;
 // ---- elements
 
 /// Returns the shape of elements of a type. The type may be in any case, with or without the number of nodes.
-/// Null for unknown types, for types without a fixed number of nodes, and for too few nodes.
-const Shape* shape_of(std::string_view type, int nodes, int dimension);
+/// Nothing for unknown types, for types without a fixed number of nodes, and for too few nodes.
+std::optional<Shape> shape_of(std::string_view type, int nodes, int dimension);
 
 /// Returns the name of the element type for these cells; empty if other programs do not know such a type.
 std::string_view type_of(Shape shape, int nodes);

@@ -50,24 +50,15 @@ std::size_t product(const std::vector<std::size_t>& lengths) {
 
 }  // namespace
 
-bool is_whole(NcType type) {
-  constexpr std::size_t kFirstWhole = 2;
-  const std::size_t found = alternative_of(type);
-  return found >= kFirstWhole && found < kTypesOfValues.size();
-}
+bool is_whole(NcType type) { return are_integers(values_of_type(alternative_of(type))); }
 
 std::size_t size_of(NcType type) {
   return type == NC_CHAR ? 1 : static_cast<std::size_t>(size_of_type(alternative_of(type)));
 }
 
 bool can_hold(NcType type, const Values& values) {
-  return std::visit(
-      [&](const auto& numbers) {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        if constexpr (std::is_arithmetic_v<Number>) return are_exact<Number>(values);
-        return false;
-      },
-      values_of_type(alternative_of(type)));
+  return with_numbers(values_of_type(alternative_of(type)),
+                      [&]<class Number>(const std::vector<Number>&) { return are_exact<Number>(values); });
 }
 
 Attribute text_attribute(std::string name, std::string text) {
@@ -325,16 +316,14 @@ std::vector<std::string> NcInput::texts(const Variable& variable) const {
 Values NcInput::values(const Variable& variable, const std::vector<std::size_t>& starts,
                        const std::vector<std::size_t>& counts) const {
   (void)size(variable);  // throws if the file is too small for its values
-  return values_of_type(alternative_of(variable.type), [&](auto& numbers) {
-    using Number = typename std::decay_t<decltype(numbers)>::value_type;
-    if constexpr (std::is_arithmetic_v<Number>) {
-      numbers.resize(claimed(variable.name, product(counts), sizeof(Number)));
-      if (numbers.empty()) return;
-      check(nc_get_vara(id_, variable.id, starts.data(), counts.data(), numbers.data()), variable.name);
-    } else {
-      fail(variable.name + " has no numbers");
-    }
+  Values result = values_of_type(alternative_of(variable.type));
+  if (are_texts(result)) fail(variable.name + " has no numbers");
+  with_numbers(result, [&]<class Number>(std::vector<Number>& numbers) {
+    numbers.resize(claimed(variable.name, product(counts), sizeof(Number)));
+    if (numbers.empty()) return;
+    check(nc_get_vara(id_, variable.id, starts.data(), counts.data(), numbers.data()), variable.name);
   });
+  return result;
 }
 
 Storage NcInput::storage() const {

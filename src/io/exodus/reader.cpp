@@ -101,18 +101,22 @@ Index checked_length(const NcInput& file, const std::string& dimension) {
 
 /// Throws InputError if a file has blocks or sets of edges or faces, which cannot be reordered.
 void refuse_unknown_kinds(const NcInput& file) {
-  for (const Dimension& dimension : file.dimensions()) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kKinds{{
-        {"num_ed_blk", "blocks of edges"},
-        {"num_fa_blk", "blocks of faces"},
-        {"num_edge_sets", "sets of edges"},
-        {"num_face_sets", "sets of faces"},
-    }};
-    for (const auto& [name, words] : kKinds) {
-      if (dimension.name == name && dimension.length > 0)
-        file.fail(fmt::format("has {} {}", dimension.length, words), "blocks of elements are understood");
-    }
+  constexpr std::array<std::pair<const char*, const char*>, 4> kKinds{{
+      {"num_ed_blk", "blocks of edges"},
+      {"num_fa_blk", "blocks of faces"},
+      {"num_edge_sets", "sets of edges"},
+      {"num_face_sets", "sets of faces"},
+  }};
+  for (const auto& [name, words] : kKinds) {
+    if (const std::size_t length = file.length(name); length > 0)
+      file.fail(fmt::format("has {} {}", length, words), "blocks of elements are understood");
   }
+}
+
+/// Returns whether a name is one of a list.
+template <std::size_t Size>
+bool is_one_of(const std::string& name, const std::array<std::string_view, Size>& names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 /// Leaves out the communication maps of a piece of a decomposed mesh (Nemesis): reordering would not update
@@ -121,9 +125,6 @@ void leave_out_decomposition(Reading& reading) {
   constexpr std::array<std::string_view, 9> kCommunication{"node_mapi",   "node_mapb",   "node_mape",
                                                            "elem_mapi",   "elem_mapb",   "n_comm_nids",
                                                            "n_comm_proc", "e_comm_eids", "e_comm_sids"};
-  const auto is_one_of = [](const std::string& name, const auto& words) {
-    return std::find(words.begin(), words.end(), name) != words.end();
-  };
   const auto& variables = reading.file.variables();
   if (std::none_of(variables.begin(), variables.end(),
                    [&](const Variable& variable) { return is_one_of(variable.name, kCommunication); })) {
@@ -349,10 +350,10 @@ void read_block(Reading& reading, std::size_t b, const Variable* connect) {
     file.fail(fmt::format("connect{} has more elements than num_elem, {}, leaves", b + 1, reading.elements));
   reading.block_ends.push_back(reading.block_ends.back() + static_cast<Index>(shape[0]));
   if (shape[0] == 0) return;
-  const Shape* const found =
-      shape[1] > 1024 ? nullptr
-                      : shape_of(block.type, static_cast<int>(shape[1]), reading.metadata->coordinates);
-  if (found == nullptr) {
+  std::optional<Shape> found;
+  if (shape[1] <= 1024)
+    found = shape_of(block.type, static_cast<int>(shape[1]), reading.metadata->coordinates);
+  if (!found) {
     file.fail(
         fmt::format("block {} (id {}) has elements of type '{}' with {} nodes", b + 1, block.id, block.type,
                     shape[1]),
@@ -482,13 +483,13 @@ bool is_of_nodes_or_elements(const Reading& reading, const Dimension& dimension)
   constexpr std::array<std::string_view, 7> kFixed{"len_string", "len_line", "len_name",  "four",
                                                    "num_dim",    "num_info", "num_qa_rec"};
   const std::string& name = dimension.name;
-  if (std::find(kWhole.begin(), kWhole.end(), name) != kWhole.end()) return true;
+  if (is_one_of(name, kWhole)) return true;
   const auto is_numbered = [&](std::string_view begin) {
     return name.size() > begin.size() && name.starts_with(begin) &&
            std::isdigit(static_cast<unsigned char>(name[begin.size()])) != 0;
   };
   if (std::any_of(kNumbered.begin(), kNumbered.end(), is_numbered)) return true;
-  if (dimension.unlimited || std::find(kFixed.begin(), kFixed.end(), name) != kFixed.end()) return false;
+  if (dimension.unlimited || is_one_of(name, kFixed)) return false;
   if (name.ends_with("_var") || name.ends_with("_sets") || name == "num_el_blk") return false;
   // it may count nodes or elements under another name
   return dimension.length == static_cast<std::size_t>(reading.nodes) ||
@@ -514,17 +515,13 @@ void keep_others(Reading& reading) {
     std::vector<Dimension> dimensions;
     for (const int place : variable.dimensions)
       dimensions.push_back(file.dimensions()[static_cast<std::size_t>(place)]);
-    if (std::any_of(dimensions.begin(), dimensions.end(), [&](const Dimension& dimension) {
-          return is_of_nodes_or_elements(reading, dimension);
-        })) {
-      reading.notes.push_back(fmt::format(
-          "the variable {} is left out: it belongs to nodes or elements in a way that is not known",
-          variable.name));
-      continue;
-    }
-    if (size_of(variable.type) == 0) {
-      reading.notes.push_back(
-          fmt::format("the variable {} is left out: it has no numbers or characters", variable.name));
+    const bool moves = std::any_of(dimensions.begin(), dimensions.end(), [&](const Dimension& dimension) {
+      return is_of_nodes_or_elements(reading, dimension);
+    });
+    if (moves || size_of(variable.type) == 0) {
+      reading.notes.push_back(fmt::format("the variable {} is left out: it {}", variable.name,
+                                          moves ? "belongs to nodes or elements in a way that is not known"
+                                                : "has no numbers or characters"));
       continue;
     }
     metadata.plain.push_back({variable.name, variable.type, std::move(dimensions),

@@ -42,6 +42,7 @@ std::int32_t bit_of_side(int side) { return 1 << (side - 1); }
 
 int bit_count(std::int32_t mask) { return std::popcount(static_cast<std::uint32_t>(mask)); }
 
+/// Returns the members of a set. Drops an entry if an earlier one has the same member and side.
 Members without_repeated(const Entries& own, bool are_sides) {
   const Index count = index_size(own.members);
   std::vector<Index> entries = index_range(0, count);

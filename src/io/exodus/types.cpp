@@ -27,7 +27,6 @@ constexpr std::array kTypeNames{
 };
 
 constexpr std::string_view kShell = "SHELL";
-constexpr std::array kShellShapes{Shape::line, Shape::triangle, Shape::quad};
 
 struct WrittenType {
   Shape shape;
@@ -67,28 +66,26 @@ int nodes_of_face(int corners, bool quadratic, bool has_centre) {
 
 }  // namespace
 
-const Shape* shape_of(std::string_view type, int nodes, int dimension) {
-  const Shape* shape = nullptr;
+std::optional<Shape> shape_of(std::string_view type, int nodes, int dimension) {
+  std::optional<Shape> shape;
+  for (const TypeName& name : kTypeNames) {
+    if (!shape && begins_with(type, name.begin)) shape = name.shape;
+  }
   if (begins_with(type, kShell)) {
     // in two dimensions, a shell of up to three nodes is a line
-    const int corners = dimension < 3 && nodes <= 3 ? 2 : nodes == 3 || nodes == 6 || nodes == 7 ? 3 : 4;
-    shape = &kShellShapes[static_cast<std::size_t>(corners) - 2];
-  } else {
-    const auto* const found = std::find_if(kTypeNames.begin(), kTypeNames.end(), [&](const TypeName& name) {
-      return begins_with(type, name.begin);
-    });
-    if (found != kTypeNames.end()) shape = &found->shape;
+    const bool is_line = dimension < 3 && nodes <= 3;
+    const bool is_triangle = nodes == 3 || nodes == 6 || nodes == 7;
+    shape = is_line ? Shape::line : is_triangle ? Shape::triangle : Shape::quad;
   }
-  const bool fits =
-      shape != nullptr && (*shape == Shape::vertex ? nodes == 1 : nodes >= corners(*shape, nodes));
-  return fits ? shape : nullptr;
+  const bool fits = shape && (*shape == Shape::vertex ? nodes == 1 : nodes >= corners(*shape, nodes));
+  return fits ? shape : std::nullopt;
 }
 
 std::string_view type_of(Shape shape, int nodes) {
-  const auto* const found =
-      std::find_if(kWrittenTypes.begin(), kWrittenTypes.end(),
-                   [&](const WrittenType& type) { return type.shape == shape && type.nodes == nodes; });
-  return found == kWrittenTypes.end() ? std::string_view() : found->name;
+  for (const WrittenType& type : kWrittenTypes) {
+    if (type.shape == shape && type.nodes == nodes) return type.name;
+  }
+  return {};
 }
 
 std::span<const int> file_order(Shape shape, int nodes) {
