@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -114,6 +115,33 @@ TEST(RegularRecords, StopAtTheSameErrorOnOneThread) {
   EXPECT_EQ(regular, 2);
   EXPECT_EQ(in.line(), 4);
   EXPECT_EQ(in.word("a word"), "3");
+}
+
+TEST(RegularRecords, MayHaveSeveralLines) {
+  constexpr Index kOfThree = 4;
+  const TemporaryFolder folder;
+  const std::string good = "1\n2\n3\n# none\n4\n5\n6\n\n7\n8\n9\n10\n11\n12\n# none\ntail\n";
+  const std::vector<int> expected = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  for (const std::string_view irregular : {"5\n", "5 ", "\n5\n", "5\n\n", "5\r"}) {
+    const std::string text = std::string(good).replace(good.find("5\n"), 2, irregular);
+    for (const int threads : {1, 2}) {
+      for (std::size_t bytes = 1; bytes <= text.size() + 1; ++bytes) {
+        Scanner in(folder.file("a.txt", text), '#');
+        std::vector<int> numbers(expected.size());
+        const auto read = [&](Scanner& part, Index record) {
+          for (Index k = 0; k < 3; ++k) numbers[3 * record + k] = part.integer<int>("a number");
+          return true;
+        };
+        const Index regular = in_arena({.threads = threads},
+                                       [&] { return read_regular_records(in, kOfThree, read, bytes, 3); });
+        EXPECT_TRUE(text != good || regular == kOfThree) << bytes;
+        for (Index record = regular; record < kOfThree; ++record) read(in, record);
+        EXPECT_EQ(numbers, expected) << irregular << " in parts of " << bytes;
+        EXPECT_EQ(in.word("a word"), "tail");
+        EXPECT_EQ(in.line(), std::count(text.begin(), text.end(), '\n') + (irregular == "5\r" ? 1 : 0));
+      }
+    }
+  }
 }
 
 TEST(RegularLines, AreRecordsEvenIfTheyAreBlank) {

@@ -104,6 +104,25 @@ TEST(Scanner, DoesNotBelieveCountsThatTheFileCannotHold) {
   EXPECT_EQ(scanner.count("nodes", 2), 2);
 }
 
+TEST(Scanner, CountsPositionsFromZero) {
+  const TemporaryFolder folder;
+  Scanner scanner(folder.file("a.txt", "1 4 0 5"));
+  EXPECT_EQ(scanner.position("a vertex", 4), 0);
+  EXPECT_EQ(scanner.position("a vertex", 4), 3);
+  EXPECT_THROW(scanner.position("a vertex", 4), InputError);
+  EXPECT_THROW(scanner.position("a vertex", 4), InputError);
+}
+
+TEST(Scanner, CountsTheWordsOfALine) {
+  const TemporaryFolder folder;
+  Scanner scanner(folder.file("a.txt", "one \ttwo\fthree # four\n# none\n"), '#');
+  EXPECT_EQ(scanner.words_in_line(), 3);
+  (void)scanner.word("a word");
+  EXPECT_EQ(scanner.words_in_line(), 2);
+  (void)scanner.raw_line();
+  EXPECT_EQ(scanner.words_in_line(), 0);
+}
+
 TEST(Scanner, RefusesFoldersEmptyAndMissingFiles) {
   const TemporaryFolder folder;
   EXPECT_THROW(Scanner(folder.path()), InputError);

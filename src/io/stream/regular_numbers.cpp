@@ -86,17 +86,11 @@ std::vector<std::size_t> first_words(const std::vector<std::string_view>& parts)
   return first;
 }
 
-/// The numbers read from a part.
-struct PartRead {
-  RegularNumbers numbers;
-  bool is_regular = false;  ///< all words are numbers, and nothing else is there
-};
-
-/// Reads as many numbers as `values` holds, then checks that nothing follows them in the part.
+/// Reads as many numbers as `values` holds. Its bytes are those of the whole part if all words are numbers,
+/// and nothing else is there.
 template <class Number>
-PartRead read_part(std::string_view part, std::span<Number> values) {
-  PartRead result;
-  RegularNumbers& read = result.numbers;
+RegularNumbers read_part(std::string_view part, std::span<Number> values) {
+  RegularNumbers read;
   const char* const end = part.data() + part.size();
   const char* at = part.data();
   std::int64_t lines = 0;
@@ -109,24 +103,23 @@ PartRead read_part(std::string_view part, std::span<Number> values) {
   for (; read.count < values.size(); ++read.count) {
     skip_separators();
     const char* const after = read_number(at, end, values[read.count]);
-    if (after == nullptr) return result;
+    if (after == nullptr) return read;
     at = after;
     read.bytes = static_cast<std::size_t>(at - part.data());
     read.lines = lines;
   }
   skip_separators();  // there may be bytes that are neither separators nor words
-  if (at < end) return result;
+  if (at < end) return read;
   read.bytes = part.size();
   read.lines = lines;
-  result.is_regular = true;
-  return result;
+  return read;
 }
 
 /// Reads `count` numbers of a text by `read_one(part, first, count)`, which reads some of them into their
 /// places.
-RegularNumbers read_parts(
-    std::string_view text, std::size_t count, std::size_t part_bytes,
-    const std::function<PartRead(std::string_view part, std::size_t first, std::size_t count)>& read_one) {
+RegularNumbers read_parts(std::string_view text, std::size_t count, std::size_t part_bytes,
+                          const std::function<RegularNumbers(std::string_view part, std::size_t first,
+                                                             std::size_t count)>& read_one) {
   RegularNumbers read;
   while (read.count < count) {
     const std::size_t before = read.count;
@@ -136,18 +129,18 @@ RegularNumbers read_parts(
     const std::vector<std::string_view> parts = divided_at_blanks(text, read.bytes, end, part_bytes);
     if (parts.empty()) break;
     const std::vector<std::size_t> first = first_words(parts);
-    std::vector<PartRead> of_part(parts.size());
+    std::vector<RegularNumbers> of_part(parts.size());
     for_each_chunk(index_size(parts), 1, [&](Index k, Index, Index) {
       const std::size_t begin = std::min(first[k], left);
       of_part[k] = read_one(parts[k], before + begin, std::min(first[k + 1], left) - begin);
     });
     for (std::size_t k = 0; k < parts.size() && read.count < count; ++k) {
-      const RegularNumbers& own = of_part[k].numbers;
+      const RegularNumbers& own = of_part[k];
       read.count += own.count;
       read.bytes += own.bytes;
       read.lines += own.lines;
       read.has_returns = read.has_returns || own.has_returns;
-      if (!of_part[k].is_regular) return read;
+      if (own.bytes < parts[k].size()) return read;
     }
   }
   return read;

@@ -67,25 +67,26 @@ bool has_any_of(std::string_view text, std::string_view bytes);
 /// Counts the words of a text on all threads. All bytes up to the space separate words.
 std::size_t count_words(std::string_view text);
 
-/// Reads the next records of a text, each on a line of its own, on all threads, as far as they are regular.
+/// Reads the next records of a text, each on lines of its own, on all threads, as far as they are regular.
 /// Returns how many records it read; the scanner is then after the last of them. The caller reads the other
 /// records one by one: it reports their errors and accepts what is unusual but valid. So errors and results
 /// are those of a reader that reads all records one by one.
 ///
 /// The text is divided at line ends into parts. The number of lines with a word in each part gives the first
-/// record of the next.
+/// record of the next. A part has the records that begin in it.
 ///
 /// @param in     is after all text that precedes the first record: on the record's line, or on a line before
 /// it
 /// @param count  the most records to read, ≥ 0
 /// @param read   `read(part, record)` takes the words of a record; returns false if the record is not
 ///              regular. It writes only data of the record, and may be called again for the same record. A
-///              record is also not regular if `read` throws an InputError, or if more words follow on its
-///              line
+///              record is also not regular if `read` throws an InputError, if more words follow on its last
+///              line, or if it has another number of lines
 /// @param part_bytes  least size of a part, > 0
+/// @param lines       of each record
 /// @note O(bytes); memory: a few numbers for each part.
 Index read_regular_records(Scanner& in, Index count, const std::function<bool(Scanner&, Index)>& read,
-                           std::size_t part_bytes = std::size_t{1} << 20);
+                           std::size_t part_bytes = std::size_t{1} << 20, Index lines = 1);
 
 /// As `read_regular_records`, for records that may have no word: each line is a record. The scanner must be
 /// at the beginning of a line of a text without comments; it is then at the beginning of the line after the
@@ -93,14 +94,29 @@ Index read_regular_records(Scanner& in, Index count, const std::function<bool(Sc
 Index read_regular_lines(Scanner& in, Index count, const std::function<bool(Scanner&, Index)>& read,
                          std::size_t part_bytes = std::size_t{1} << 20);
 
-/// Reads records as `read_regular_records` does; a record is regular only if it begins with a number that is
-/// one more than that of the last record. Adds the numbers to `numbering`, which is empty before.
+/// Reads all records of a text, those that are not regular one by one.
+///
+/// @param read  `read(scanner, record)` takes the words of a record. It throws an InputError if the record is
+///              faulty, and writes only data of the record: it may be called again for the same record
 template <class Read>
-Index read_numbered_records(Scanner& in, Index count, IdMap& numbering, const Read& read) {
-  constexpr std::int64_t kFarthest = std::int64_t{1} << 40;
+void read_records(Scanner& in, Index count, const Read& read) {
+  const Index regular = read_regular_records(in, count, [&](Scanner& part, Index record) {
+    read(part, record);
+    return true;
+  });
+  for (Index record = regular; record < count; ++record) read(in, record);
+}
+
+/// Reads records as `read_regular_records` does; a record is regular only if it begins with a number that is
+/// one more than that of the last record; reads nothing if a number could be outside of `least` … `most`.
+/// Adds the numbers to `numbering`, which is empty before.
+template <class Read>
+Index read_numbered_records(Scanner& in, Index count, IdMap& numbering, const Read& read,
+                            std::int64_t least = -(std::int64_t{1} << 40),
+                            std::int64_t most = std::int64_t{1} << 40) {
   std::int64_t first = 0;
   Scanner ahead = in;
-  if (!ahead.take_number(first) || first < -kFarthest || first > kFarthest) return 0;
+  if (!ahead.take_number(first) || first < least || first > most - count) return 0;
   const Index regular = read_regular_records(in, count, [&](Scanner& part, Index record) {
     std::int64_t number = 0;
     return part.take_number(number) && number == first + record && read(part, record);

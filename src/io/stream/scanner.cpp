@@ -10,8 +10,8 @@
 namespace meshorder {
 namespace {
 
-bool is_line_end(char c) { return c == '\n' || c == '\r'; }
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
+bool is_line_end(char c) { return c <= '\r' && (c == '\n' || c == '\r'); }
+bool is_blank(char c) { return c <= ' ' && (c == ' ' || c == '\t' || c == '\f' || c == '\v'); }
 
 }  // namespace
 
@@ -138,17 +138,12 @@ template bool Scanner::take_any_number<std::int64_t>(std::int64_t&);
 template bool Scanner::take_any_number<std::uint64_t>(std::uint64_t&);
 template bool Scanner::take_any_number<double>(double&);
 
-double Scanner::real(std::string_view what) {
-  double value = 0;
-  return take_number(value) ? value : parse_real(*this, word(what), what);
+void Scanner::fail_position(std::string_view what, std::int64_t number, Index last) const {
+  fail(std::string(what) + " is " + std::to_string(number), "1 to " + std::to_string(last) + " are possible");
 }
 
-double Scanner::finite(std::string_view what) {
-  const double value = real(what);
-  if (!std::isfinite(value)) {
-    fail(std::string(what) + " is not finite", "a finite number is needed");
-  }
-  return value;
+void Scanner::fail_not_finite(std::string_view what) const {
+  fail(std::string(what) + " is not finite", "a finite number is needed");
 }
 
 Index Scanner::count(std::string_view what, std::int64_t min_bytes) {
@@ -156,15 +151,14 @@ Index Scanner::count(std::string_view what, std::int64_t min_bytes) {
 }
 
 Index Scanner::checked_count(std::int64_t number, std::string_view what, std::int64_t min_bytes) const {
+  // the last item of a text file may lack its line end
+  const std::int64_t most = (bytes_left() + 1) / std::max<std::int64_t>(min_bytes, 1);
+  if (number == 0 || (number > 0 && number <= most && number <= kMaxIndex)) return static_cast<Index>(number);
   const std::string shown_count = std::string(what) + " is " + std::to_string(number);
   if (number < 0) fail(shown_count, "it cannot be negative");
   if (number > kMaxIndex) fail(shown_count, "at most 2147483647 are possible");
-  // the last item of a text file may lack its line end
-  if (number > 0 && number > (bytes_left() + 1) / std::max<std::int64_t>(min_bytes, 1)) {
-    fail(shown_count + ", but only " + std::to_string(bytes_left()) + " bytes follow",
-         "the count is wrong or the file is cut short");
-  }
-  return static_cast<Index>(number);
+  fail(shown_count + ", but only " + std::to_string(bytes_left()) + " bytes follow",
+       "the count is wrong or the file is cut short");
 }
 
 std::string_view Scanner::rest_of_line() {
@@ -184,6 +178,18 @@ std::string_view Scanner::raw_line() {
   const std::string_view result = text_.substr(begin, position_ - begin);
   next_line();
   return result;
+}
+
+int Scanner::words_in_line() const {
+  int words = 0;
+  bool in_word = false;
+  for (std::size_t at = position_; at < text_.size() && !is_line_end(text_[at]); ++at) {
+    if (comment_ != '\0' && text_[at] == comment_) break;
+    const bool of_word = !is_blank(text_[at]);
+    if (of_word && !in_word) ++words;
+    in_word = of_word;
+  }
+  return words;
 }
 
 std::string_view Scanner::peek_line() const {

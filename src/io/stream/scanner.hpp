@@ -88,6 +88,12 @@ class Scanner {
   /// Takes the next word as an integer of type T.
   template <class T>
   T integer(std::string_view what);
+  /// Takes the next word as a position from 1 to `last`; returns it counted from 0.
+  Index position(std::string_view what, Index last) {
+    const auto number = integer<std::int64_t>(what);
+    if (number < 1 || number > last) fail_position(what, number, last);
+    return static_cast<Index>(number - 1);
+  }
   /// Takes the next word as a real number; accepts `nan`, `inf` and Fortran's 1.0D3.
   double real(std::string_view what);
   /// Takes the next word as a finite real number.
@@ -103,6 +109,8 @@ class Scanner {
   std::string_view rest_of_line();
   /// Takes the rest of the line verbatim, comment included; moves to the next line.
   std::string_view raw_line();
+  /// Returns how many words the rest of the line has, without its comment.
+  [[nodiscard]] int words_in_line() const;
   /// Returns the rest of the line verbatim without taking it.
   [[nodiscard]] std::string_view peek_line() const;
 
@@ -114,6 +122,8 @@ class Scanner {
   std::string_view binary_block(std::int64_t bytes, std::string_view what);
 
  private:
+  [[noreturn]] void fail_not_finite(std::string_view what) const;
+  [[noreturn]] void fail_position(std::string_view what, std::int64_t number, Index last) const;
   void skip_blanks();
   void next_line();
   [[nodiscard]] bool at_break() const;
@@ -132,8 +142,8 @@ class Scanner {
     }
     return true;
   }
-  /// Takes a number that has only digits, ends before a space or line feed and is too short to overflow;
-  /// otherwise returns false, and skips only spaces and line feeds. Most numbers of a mesh have this form.
+  /// Takes a number of at most seven digits alone that ends before a space or line feed; otherwise returns
+  /// false, and skips only spaces and line feeds. Most numbers of a mesh have this form.
   template <class T>
   bool take_digits(T& value);
   template <class T>
@@ -166,25 +176,13 @@ extern template std::uint64_t parse_integer<std::uint64_t>(const Scanner&, std::
 template <class T>
 bool Scanner::take_digits(T& value) {
   if (!skip_to_word()) return false;
+  if (text_.size() - position_ < 8) return false;
   const char* const begin = text_.data() + position_;
-  if (text_.size() - position_ >= 8) {
-    const Digits digits = leading_digits(begin);
-    if (digits.count > 0 && digits.count < 8 && digits.count <= std::numeric_limits<T>::digits10 &&
-        (begin[digits.count] == ' ' || begin[digits.count] == '\n')) {
-      position_ += static_cast<std::size_t>(digits.count);
-      value = static_cast<T>(digits.number);
-      return true;
-    }
-  }
-  const char* at = begin;
-  T number = 0;
-  for (; *at >= '0' && *at <= '9'; ++at) {
-    if (at - begin == std::numeric_limits<T>::digits10) return false;
-    number = static_cast<T>(10 * number + (*at - '0'));
-  }
-  if (at == begin || (*at != ' ' && *at != '\n')) return false;
-  position_ += static_cast<std::size_t>(at - begin);
-  value = number;
+  const Digits digits = leading_digits(begin);
+  const bool fits = digits.count > 0 && digits.count < 8 && digits.count <= std::numeric_limits<T>::digits10;
+  if (!fits || (begin[digits.count] != ' ' && begin[digits.count] != '\n')) return false;
+  position_ += static_cast<std::size_t>(digits.count);
+  value = static_cast<T>(digits.number);
   return true;
 }
 
@@ -200,6 +198,17 @@ template <class T>
 T Scanner::integer(std::string_view what) {
   T value{};
   return take_number(value) ? value : parse_integer<T>(*this, word(what), what);
+}
+
+inline double Scanner::real(std::string_view what) {
+  double value = 0;
+  return take_number(value) ? value : parse_real(*this, word(what), what);
+}
+
+inline double Scanner::finite(std::string_view what) {
+  const double value = real(what);
+  if (!std::isfinite(value)) fail_not_finite(what);
+  return value;
 }
 
 template <class T>

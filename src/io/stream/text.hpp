@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <span>
 #include <string_view>
 #include <type_traits>
 
@@ -45,6 +46,11 @@ class Text {
     constexpr std::size_t kMostCharacters = 32;
     char* const at = std::copy(before.begin(), before.end(), room(before.size() + kMostCharacters));
     written(fmt::format_to(at, FMT_COMPILE("{}"), value));
+  }
+
+  /// Appends numbers, each after a blank.
+  void reals(std::span<const double> values) {
+    for (const double value : values) real(" ", value);
   }
 
   /// Appends `before` and a number of any type as `print` does for `{}`, by the fastest of these functions.
