@@ -1,12 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 #include "io/labels.hpp"
-#include "io/stream/regular_text.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/su2/su2.hpp"
 #include "io/wedges.hpp"
-#include "mesh/cells.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -16,7 +14,6 @@
 #include <charconv>
 #include <cmath>
 #include <memory>
-#include <span>
 #include <system_error>
 #include <unordered_set>
 #include <utility>
@@ -41,13 +38,6 @@ bool is_plain(std::string_view keyword) {
   return std::find(kPlain.begin(), kPlain.end(), keyword) != kPlain.end() ||
          keyword.starts_with("PERIODIC_") || keyword.starts_with("FFD_");
 }
-
-/// A place in the text: the line of a record.
-struct Place {
-  std::int64_t byte = 0;
-  std::int64_t line = 0;
-  std::int64_t records = 0;  ///< number of the record, counted from 1, from that byte on; 0: the line itself
-};
 
 class Su2Reader {
  public:
@@ -230,10 +220,7 @@ class Su2Reader {
 
   /// Fails on a line with more numbers than its type has nodes; one number too many has been taken.
   [[noreturn]] void refuse_nodes(const ElementKind& kind) const {
-    int numbers = kind.nodes + 1;
-    std::string_view rest = in_.peek_line();
-    rest = rest.substr(0, rest.find(kComment));
-    while (!next_word(rest).empty()) ++numbers;
+    const int numbers = kind.nodes + 1 + in_.words_in_line();
     const auto likely =
         std::find_if(kElementKinds.begin(), kElementKinds.end(), [&](const ElementKind& other) {
           return dimension(other.shape) == dimension(kind.shape) &&
@@ -266,80 +253,16 @@ class Su2Reader {
   }
 
   static const ElementKind* kind_of_type(std::int32_t type) {
-    const auto found = std::find_if(kElementKinds.begin(), kElementKinds.end(),
-                                    [&](const ElementKind& kind) { return kind.type == type; });
+    const auto found = std::ranges::find(kElementKinds, type, &ElementKind::type);
     return found == kElementKinds.end() ? nullptr : &*found;
-  }
-
-  /// Returns how many words follow on the line of the next word; 0 at the end of the file.
-  [[nodiscard]] int words_of_next_line() const {
-    Scanner ahead = in_;
-    int words = ahead.at_end() ? 0 : 1;
-    if (words > 0) (void)ahead.word("a word");
-    for (; words > 0 && !ahead.at_line_end(); ++words) (void)ahead.word("a word");
-    return words;
-  }
-
-  /// Reads elements on all threads, up to the first one that has more nodes than the first element, is not
-  /// numbered as it is, or is irregular. Returns how many it read.
-  Index read_regular_elements(Index count, int wanted_dimension, bool& numbered) {
-    Scanner begin = in_;
-    std::int32_t type = 0;
-    const ElementKind* const first = begin.take_number(type) ? kind_of_type(type) : nullptr;
-    if (count == 0 || first == nullptr) return 0;
-    const bool has_numbers = words_of_next_line() == 2 + first->nodes;
-    Cells& cells = mesh_.cells;
-    const Index cells_before = cells.size();
-    const Index last = has_points_ ? mesh_.vertex_count() - 1 : kMaxIndex;
-    begin.move_to(in_);
-    append_cells(cells, first->shape, first->nodes, count);
-    const Index regular = read_regular_records(in_, count, [&](Scanner& in, Index c) {
-      std::int32_t own_type = 0;
-      if (!in.take_number(own_type)) return false;
-      const ElementKind* const kind = own_type == type ? first : kind_of_type(own_type);
-      if (kind == nullptr || dimension(kind->shape) != wanted_dimension || kind->nodes > first->nodes)
-        return false;
-      cells.shapes[cells_before + c] = kind->shape;
-      for (Index& node : cells[cells_before + c].first(static_cast<std::size_t>(kind->nodes))) {
-        if (!in.take_number(node) || node < 0 || node > last) return false;
-      }
-      Index number = 0;
-      return !has_numbers || (in.take_number(number) && number == c);
-    });
-    trim_to_corners(cells, cells_before, regular);
-    if (has_numbers && regular > 0) numbered = true;
-    if (!has_points_) note_largest_node(cells_before, begin);
-    return regular;
-  }
-
-  /// Notes the largest node of the cells from `first` on, whose lines begin at `begin`.
-  void note_largest_node(Index first, const Scanner& begin) {
-    const Cells& cells = mesh_.cells;
-    const auto largest =
-        std::max_element(cells.vertices.begin() + cells.offsets[first], cells.vertices.end());
-    if (largest == cells.vertices.end() || *largest <= largest_node_) return;
-    const auto cell =
-        std::upper_bound(cells.offsets.begin(), cells.offsets.end(), largest - cells.vertices.begin());
-    largest_node_ = *largest;
-    place_of_largest_ = {begin.byte(), begin.line(), cell - cells.offsets.begin() - first};
-  }
-
-  [[nodiscard]] std::int64_t line_of_largest() const {
-    const auto [byte, first_line, records] = place_of_largest_;
-    Scanner at = in_.at(byte, first_line);
-    std::int64_t line = first_line;
-    for (std::int64_t k = 0; k < records; ++k) {
-      (void)at.at_end();
-      line = at.line();
-      (void)at.raw_line();
-    }
-    return line;
   }
 
   void read_elements(Index count, int wanted_dimension, bool& numbered) {
     Cells& cells = mesh_.cells;
+    // only the first time: reserving for each of many markers would copy all cells each time
+    if (cells.size() == 0) cells.reserve(count, Offset{count} * (wanted_dimension + 1));
     std::array<Index, 8> cell{};
-    for (Index c = read_regular_elements(count, wanted_dimension, numbered); c < count; ++c) {
+    for (Index c = 0; c < count; ++c) {
       std::int32_t type = 0;
       if (!in_.take_number(type))
         type = parse_integer<std::int32_t>(in_, first_word(), "the type of an element");
@@ -369,23 +292,9 @@ class Su2Reader {
     }
     if (number > largest_node_) {
       largest_node_ = number;
-      place_of_largest_ = {in_.byte(), in_.line(), 0};
+      line_of_largest_ = in_.line();
     }
     return static_cast<Index>(number);
-  }
-
-  /// Reads points on all threads, up to the first one that is not numbered as the first point is, or is
-  /// irregular. Returns how many it read.
-  Index read_regular_points() {
-    const bool has_numbers = words_of_next_line() > mesh_.dimension;
-    const Index regular = read_regular_records(in_, mesh_.vertex_count(), [&](Scanner& in, Index v) {
-      const auto point = std::span(mesh_.points[v]).first(static_cast<std::size_t>(mesh_.dimension));
-      if (!std::ranges::all_of(point, [&](double& x) { return in.take_finite(x); })) return false;
-      Index number = 0;
-      return !has_numbers || (in.take_number(number) && number == v);
-    });
-    if (has_numbers && regular > 0) metadata_->numbers_points = true;
-    return regular;
   }
 
   void read_points() {
@@ -400,7 +309,7 @@ class Su2Reader {
     (void)in_.raw_line();
     has_points_ = true;
     mesh_.points.resize(count, {0, 0, 0});
-    for (Index v = read_regular_points(); v < count; ++v) {
+    for (Index v = 0; v < count; ++v) {
       Point& point = mesh_.points[v];
       for (std::size_t k = 0; k < static_cast<std::size_t>(mesh_.dimension); ++k) {
         if (k > 0) expect_more("a coordinate");
@@ -413,7 +322,7 @@ class Su2Reader {
     }
     end_items(count);
     if (largest_node_ >= count) {
-      throw InputError(Location{in_.file(), line_of_largest(), -1},
+      throw InputError(Location{in_.file(), line_of_largest_, -1},
                        fmt::format("a node of the element is {}", largest_node_),
                        fmt::format("0 to {} are possible", count - 1));
     }
@@ -516,7 +425,7 @@ class Su2Reader {
   Index elements_ = 0;                // number of elements of the highest dimension
   Index markers_said_ = -1;
   std::int64_t largest_node_ = -1;
-  Place place_of_largest_;
+  std::int64_t line_of_largest_ = 0;
   bool has_points_ = false;
   bool has_other_numbers_ = false;
   bool has_more_behind_points_ = false;

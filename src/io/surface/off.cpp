@@ -6,7 +6,6 @@
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
-#include "io/stream/regular_text.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_rows.hpp"
 #include "io/surface/surface_data.hpp"
@@ -81,18 +80,11 @@ VertexColumns read_keyword(Scanner& scanner) {
   return layout;
 }
 
-int words_on_line(std::string_view line) {
-  int count = 0;
-  line = line.substr(0, line.find('#'));
-  while (!next_word(line).empty()) ++count;
-  return count;
-}
-
 /// Completes the layout from the first vertex's line: further numbers are a colour of 3 or 4 numbers, even if
 /// the keyword has no C.
 void measure_vertices(Scanner& scanner, VertexColumns& layout) {
   if (scanner.at_end()) return;
-  const int numbers = words_on_line(scanner.peek_line());
+  const int numbers = scanner.words_in_line();
   const int others = 3 + (layout.normals ? 3 : 0) + (layout.texture ? 2 : 0);
   if (numbers == others && !layout.colors) return;
   if (numbers == others + 3 || numbers == others + 4) {
@@ -131,29 +123,18 @@ struct Numbers {
   }
 };
 
-/// Reads points on all threads if vertices have coordinates alone, each on a line of its own. Returns how
-/// many it read.
-Index read_plain_points(Scanner& scanner, const VertexColumns& layout, std::vector<Point>& points) {
-  const bool are_plain =
-      layout.one_line_each && !layout.normals && !layout.texture && layout.color_width == 0;
-  if (!are_plain) return 0;
-  return read_regular_records(scanner, index_size(points), [&](Scanner& in, Index v) {
-    return std::all_of(points[v].begin(), points[v].end(), [&](double& x) { return in.take_finite(x); });
-  });
-}
-
 void read_vertices(Scanner& scanner, Index count, const VertexColumns& layout, Mesh& mesh) {
   mesh.points.resize(count);
   std::array<Numbers, 3> columns;  // normals, colours, texture coordinates
   const std::array<int, 3> widths{layout.normals ? 3 : 0, layout.color_width, layout.texture ? 2 : 0};
-  for (Index v = read_plain_points(scanner, layout, mesh.points); v < count; ++v) {
+  for (Point& point : mesh.points) {
     const auto expect_more = [&] {
       if (layout.one_line_each && scanner.at_line_end() && scanner.bytes_left() > 0) {
         scanner.fail("a vertex has fewer numbers than the first one", "all need the same");
       }
     };
     scanner.at_end();  // moves to the next line that holds something
-    for (double& x : mesh.points[v]) {
+    for (double& x : point) {
       expect_more();
       x = scanner.finite("a coordinate");
     }
@@ -219,28 +200,11 @@ void add_colors(ColorGroups groups, Mesh& mesh) {
   }
 }
 
-/// Reads faces of at most four vertices and without colours on all threads, as long as each is on a line of
-/// its own. Returns how many it read.
-Index read_plain_faces(Scanner& scanner, Index count, Mesh& mesh) {
-  std::vector<FewVertices> faces(static_cast<std::size_t>(count));
-  const Index read = read_regular_records(scanner, count, [&](Scanner& in, Index f) {
-    FewVertices& face = faces[static_cast<std::size_t>(f)];
-    face.fill(-1);
-    Index size = 0;
-    if (!in.take_number(size) || size < 1 || size > std::ssize(face)) return false;
-    return std::all_of(face.begin(), face.begin() + size, [&](Index& vertex) {
-      return in.take_number(vertex) && vertex >= 0 && vertex < mesh.vertex_count();
-    });
-  });
-  append_small_cells(std::span(faces).first(static_cast<std::size_t>(read)), Shape::quad, mesh.cells);
-  return read;
-}
-
 void read_faces(Scanner& scanner, Index count, Mesh& mesh) {
   mesh.cells.reserve(count, Offset{3} * count);
   ColorGroups colors;
   std::vector<Index> face;
-  for (Index f = read_plain_faces(scanner, count, mesh); f < count; ++f) {
+  for (Index f = 0; f < count; ++f) {
     const Index size = scanner.count("the number of a face's vertices", 2);
     if (size == 0) scanner.fail("a face without vertices", "at least one is needed");
     face.resize(size);
@@ -343,10 +307,6 @@ void note_losses(const Mesh& mesh, const Content& content, Notes& notes) {
   note_metadata_unsupported(mesh, "OFF", notes);
 }
 
-void add_numbers(Text& row, std::span<const double> numbers) {
-  for (const double x : numbers) row.real(" ", x);
-}
-
 /// Appends a real colour with a decimal point, as 1 and 1.0 differ in OFF.
 void add_color(Text& row, std::span<const double> color, bool integers) {
   for (const double x : color) {
@@ -382,11 +342,10 @@ void write_off(const Mesh& mesh, const FilePath& path, Notes& notes) {
   write_rows(out, mesh.vertex_count(), [&](Text& row, Index v) {
     const Point& p = mesh.points[v];
     row.real("", p[0]);
-    row.real(" ", p[1]);
-    row.real(" ", p[2]);
-    if (content.normals.width > 0) add_numbers(row, content.normals[v]);
+    row.reals(std::span(p).subspan(1));
+    if (content.normals.width > 0) row.reals(content.normals[v]);
     if (content.colors.width > 0) add_color(row, content.colors[v], content.colors.integers);
-    if (content.texture.width > 0) add_numbers(row, content.texture[v]);
+    if (content.texture.width > 0) row.reals(content.texture[v]);
     row.write("\n");
   });
   write_rows(out, mesh.cell_count(), [&](Text& row, Index c) {
