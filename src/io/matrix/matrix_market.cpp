@@ -160,54 +160,27 @@ class MatrixReader {
     mesh_.points.resize(rows, {0, 0, 0});
   }
 
-  Index place(std::string_view what) {
-    const auto number = in_.integer<std::int64_t>(what);
-    if (number < 1 || number > mesh_.vertex_count()) {
-      in_.fail(fmt::format("{} is {}", what, number),
-               fmt::format("1 to {} are possible", mesh_.vertex_count()));
-    }
-    return static_cast<Index>(number - 1);
-  }
-
-  /// Reads entries on all threads, up to the first irregular line. Returns how many it read.
-  Index read_regular_entries() {
+  void read_entries() {
     Cells& cells = mesh_.cells;
+    const Index rows = mesh_.vertex_count();
     const std::size_t reals_of_entry = field_ == Field::complex ? 2 : field_ == Field::real ? 1 : 0;
     const bool has_integer = field_ == Field::integer;
     append_cells(cells, Shape::line, 2, entries_);
     if (has_integer) resize_large(integers_, static_cast<std::size_t>(entries_));
     resize_large(reals_, static_cast<std::size_t>(entries_) * reals_of_entry);
-    const Index regular = read_regular_records(in_, entries_, [&](Scanner& in, Index i) {
+    read_records(in_, entries_, [&](Scanner& in, Index i) {
       const std::span<Index> entry = cells[i];
-      for (Index& place : entry) {
-        if (!in.take_number(place) || place < 1 || place > mesh_.vertex_count()) return false;
-        --place;
-      }
+      entry[0] = in.position("a row", rows);
+      entry[1] = in.position("a column", rows);
       cells.shapes[i] = entry[0] == entry[1] ? Shape::vertex : Shape::line;
-      const std::span reals =
-          std::span(reals_).subspan(static_cast<std::size_t>(i) * reals_of_entry, reals_of_entry);
-      return (!has_integer || in.take_number(integers_[i])) &&
-             std::ranges::all_of(reals, [&](double& value) { return in.take_number(value); });
-    });
-    trim_to_corners(cells, 0, regular);
-    if (has_integer) integers_.resize(static_cast<std::size_t>(regular));
-    reals_.resize(static_cast<std::size_t>(regular) * reals_of_entry);
-    return regular;
-  }
-
-  void read_entries() {
-    for (Index i = read_regular_entries(); i < entries_; ++i) {
-      const std::array entry{place("a row"), place("a column")};
-      if (entry[0] == entry[1]) {
-        mesh_.cells.push_back(Shape::vertex, {entry.data(), 1});
-      } else {
-        mesh_.cells.push_back(Shape::line, entry);
+      if (has_integer) integers_[i] = in.integer<std::int64_t>("a value");
+      for (std::size_t k = 0; k < reals_of_entry; ++k) {
+        reals_[static_cast<std::size_t>(i) * reals_of_entry + k] =
+            in.real(k == 0 ? "a value" : "an imaginary part");
       }
-      if (field_ == Field::integer) integers_.push_back(in_.integer<std::int64_t>("a value"));
-      if (field_ == Field::real || field_ == Field::complex) reals_.push_back(in_.real("a value"));
-      if (field_ == Field::complex) reals_.push_back(in_.real("an imaginary part"));
-      if (!in_.at_line_end()) in_.fail("the line of an entry has too many numbers", "check the first line");
-    }
+      if (!in.at_line_end()) in.fail("the line of an entry has too many numbers", "check the first line");
+    });
+    trim_to_corners(cells, 0, entries_);
   }
 
   Scanner in_;

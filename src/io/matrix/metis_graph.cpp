@@ -45,18 +45,6 @@ struct Neighbour {
   std::int64_t value;
 };
 
-/// Returns how many words a line has.
-std::size_t words_in_line(std::string_view line) {
-  std::size_t words = 0;
-  bool in_word = false;
-  for (const char c : line) {
-    const bool is_blank = c == ' ' || c == '\t' || c == '\f' || c == '\v';
-    if (!is_blank && !in_word) ++words;
-    in_word = !is_blank;
-  }
-  return words;
-}
-
 bool comes_before(const Neighbour& a, const Neighbour& b) { return a.vertex < b.vertex; }
 
 // ---- reading
@@ -67,7 +55,7 @@ class GraphReader {
 
   Mesh read() {
     read_header();
-    for (Index v = read_regular_vertices(); v < mesh_.vertex_count(); ++v) read_vertex(v);
+    read_vertices();
     while (skip_comments()) {
       if (!trimmed(in_.peek_line()).empty()) {
         in_.fail(fmt::format("more than {} lines of vertices", mesh_.vertex_count()), "the count is wrong");
@@ -130,99 +118,84 @@ class GraphReader {
     weights_ = has_weights_ ? 1 : 0;
   }
 
-  std::int64_t number(std::string_view what, std::int64_t least) {
-    if (in_.at_line_end()) in_.fail("the line ends before " + std::string(what), "it may be cut short");
-    const auto value = in_.integer<std::int64_t>(what);
-    if (value < least)
-      in_.fail(fmt::format("{} is {}", what, value), fmt::format("at least {} is needed", least));
+  static std::int64_t number(Scanner& in, std::string_view what, std::int64_t least) {
+    if (in.at_line_end()) in.fail("the line ends before " + std::string(what), "it may be cut short");
+    const auto value = in.integer<std::int64_t>(what);
+    if (value < least) fail_small(in, what, value, least);
     return value;
   }
 
-  /// Sorts the neighbours of a vertex; returns the first one that is named twice, or null.
-  static const Neighbour* sort_neighbours(std::span<Neighbour> neighbours) {
-    std::ranges::sort(neighbours, comes_before);
-    const auto twice = std::ranges::adjacent_find(neighbours, {}, &Neighbour::vertex);
-    return twice == neighbours.end() ? nullptr : &*twice;
+  [[noreturn]] static void fail_small(const Scanner& in, std::string_view what, std::int64_t value,
+                                      std::int64_t least) {
+    in.fail(fmt::format("{} is {}", what, value), fmt::format("at least {} is needed", least));
   }
 
-  /// Sets `offsets_` and `lines_` from the number of words in each line, up to the first line that cannot be
-  /// a vertex. Returns the number of lines.
-  Index count_neighbours() {
+  [[noreturn]] void fail_neighbour(const Scanner& in, std::int64_t number) const {
+    if (number < 1) fail_small(in, "a neighbour", number, 1);
+    if (number <= mesh_.vertex_count()) in.fail("the vertex names itself", "leave that out");
+    in.fail(fmt::format("a neighbour is {}", number),
+            fmt::format("1 to {} are possible", mesh_.vertex_count()));
+  }
+
+  /// Returns how many neighbours a vertex has whose line has so many words.
+  [[nodiscard]] Offset neighbours_in(int words) const {
+    const int after_weights = std::max(0, words - weights_ - (has_sizes_ ? 1 : 0));
+    return has_edge_weights_ ? (after_weights + 1) / 2 : after_weights;
+  }
+
+  /// Reads vertices: on all threads up to the first irregular line, for example a comment; then one by one.
+  void read_vertices() {
     const Index count = mesh_.vertex_count();
-    const std::size_t words_before = (has_sizes_ ? 1 : 0) + static_cast<std::size_t>(weights_);
-    const std::size_t words_of_neighbour = has_edge_weights_ ? 2 : 1;
     offsets_.resize(static_cast<std::size_t>(count) + 1);
     lines_.resize(static_cast<std::size_t>(count));
+    sizes_.resize(has_sizes_ ? static_cast<std::size_t>(count) : 0);
     Scanner ahead = in_;
-    const Index regular = read_regular_lines(ahead, count, [&](Scanner& in, Index v) {
-      const std::string_view line = in.peek_line();
-      const std::size_t words = words_in_line(line);
-      if (words < words_before || (words - words_before) % words_of_neighbour != 0) return false;
-      offsets_[static_cast<std::size_t>(v) + 1] =
-          static_cast<Offset>((words - words_before) / words_of_neighbour);
+    const Index counted = read_regular_lines(ahead, count, [&](Scanner& in, Index v) {
+      const int words = in.words_in_line();
+      offsets_[v + 1] = neighbours_in(words);
       lines_[v] = in.line();
-      in.move_on(line.size());
+      in.move_on(in.peek_line().size());
+      return words >= weights_;
+    });
+    std::partial_sum(offsets_.begin(), offsets_.begin() + counted + 1, offsets_.begin());
+    resize_large(neighbours_, static_cast<std::size_t>(offsets_[counted]));
+    resize_large(vertex_weights_, static_cast<std::size_t>(Offset{counted} * weights_));
+    const Index regular = read_regular_lines(in_, counted, [&](Scanner& in, Index v) {
+      read_vertex(in, v);
       return true;
     });
-    std::partial_sum(offsets_.begin(), offsets_.begin() + regular + 1, offsets_.begin());
-    return regular;
+    for (Index v = regular; v < count; ++v) {
+      if (!skip_comments()) {
+        throw InputError(Location{in_.file(), v == 0 ? line_of_header_ : lines_[v - 1], -1},
+                         fmt::format("only {} of {} lines of vertices", v, count),
+                         "the file is cut short, or the count in its first line is wrong");
+      }
+      const int words = in_.words_in_line();
+      offsets_[v + 1] = offsets_[v] + neighbours_in(words);
+      lines_[v] = in_.line();
+      neighbours_.resize(static_cast<std::size_t>(offsets_[v + 1]));
+      vertex_weights_.resize(static_cast<std::size_t>(Offset{v} * weights_ + std::min(words, weights_)));
+      read_vertex(in_, v);
+      (void)in_.raw_line();
+    }
   }
 
-  /// Reads vertices on all threads, up to the first irregular line. Returns how many it read.
-  Index read_regular_vertices() {
-    const Index count = count_neighbours();
-    const auto weights = static_cast<std::size_t>(weights_);
-    resize_large(neighbours_, static_cast<std::size_t>(offsets_[count]));
-    resize_large(vertex_weights_, static_cast<std::size_t>(count) * weights);
-    sizes_.resize(has_sizes_ ? static_cast<std::size_t>(count) : 0);
-    const auto take = [](Scanner& in, std::int64_t& value, std::int64_t least) {
-      return in.take_number(value) && value >= least;
-    };
-    const Index regular = read_regular_lines(in_, count, [&](Scanner& in, Index v) {
-      if (has_sizes_ && !take(in, sizes_[v], 0)) return false;
-      for (std::size_t k = 0; k < weights; ++k) {
-        if (!take(in, vertex_weights_[static_cast<std::size_t>(v) * weights + k], 0)) return false;
-      }
-      const std::span<Neighbour> neighbours = neighbours_of(v);
-      for (auto& [vertex, weight] : neighbours) {
-        if (!in.take_number(vertex) || vertex < 1 || vertex > mesh_.vertex_count()) return false;
-        if (--vertex == v || (has_edge_weights_ && !take(in, weight, 1))) return false;
-      }
-      return sort_neighbours(neighbours) == nullptr;
-    });
-    neighbours_.resize(static_cast<std::size_t>(offsets_[regular]));
-    vertex_weights_.resize(static_cast<std::size_t>(regular) * weights);
-    sizes_.resize(has_sizes_ ? static_cast<std::size_t>(regular) : 0);
-    offsets_.resize(static_cast<std::size_t>(regular) + 1);
-    lines_.resize(static_cast<std::size_t>(regular));
-    return regular;
-  }
-
-  void read_vertex(Index v) {
-    if (!skip_comments()) {
-      throw InputError(Location{in_.file(), lines_.empty() ? line_of_header_ : lines_.back(), -1},
-                       fmt::format("only {} of {} lines of vertices", v, mesh_.vertex_count()),
-                       "the file is cut short, or the count in its first line is wrong");
+  void read_vertex(Scanner& in, Index v) {
+    if (has_sizes_) sizes_[v] = number(in, "the size of a vertex", 0);
+    for (Index k = 0; k < weights_; ++k)
+      vertex_weights_[Offset{v} * weights_ + k] = number(in, "the weight of a vertex", 0);
+    const std::span<Neighbour> neighbours = neighbours_of(v);
+    for (auto& [vertex, weight] : neighbours) {
+      const auto number_of_vertex = in.integer<std::int64_t>("a neighbour");
+      if (number_of_vertex < 1 || number_of_vertex > mesh_.vertex_count() || number_of_vertex == v + 1)
+        fail_neighbour(in, number_of_vertex);
+      vertex = static_cast<Index>(number_of_vertex - 1);
+      if (has_edge_weights_) weight = number(in, "the weight of an edge", 1);
     }
-    lines_.push_back(in_.line());
-    if (has_sizes_) sizes_.push_back(number("the size of a vertex", 0));
-    for (Index k = 0; k < weights_; ++k) vertex_weights_.push_back(number("the weight of a vertex", 0));
-    const std::size_t first = neighbours_.size();
-    while (!in_.at_line_end()) {
-      const std::int64_t neighbour = number("a neighbour", 1);
-      if (neighbour > mesh_.vertex_count()) {
-        in_.fail(fmt::format("a neighbour is {}", neighbour),
-                 fmt::format("1 to {} are possible", mesh_.vertex_count()));
-      }
-      if (neighbour == v + 1) in_.fail("the vertex names itself", "leave that out");
-      neighbours_.push_back(
-          {static_cast<Index>(neighbour - 1), has_edge_weights_ ? number("the weight of an edge", 1) : 0});
-    }
-    if (const Neighbour* const twice = sort_neighbours(std::span(neighbours_).subspan(first))) {
-      in_.fail(fmt::format("the vertex names {} twice", twice->vertex + 1), "once is right");
-    }
-    offsets_.push_back(static_cast<Offset>(neighbours_.size()));
-    (void)in_.raw_line();
+    std::ranges::sort(neighbours, comes_before);
+    const auto twice = std::ranges::adjacent_find(neighbours, {}, &Neighbour::vertex);
+    if (twice != neighbours.end())
+      in.fail(fmt::format("the vertex names {} twice", twice->vertex + 1), "once is right");
   }
 
   [[nodiscard]] std::span<Neighbour> neighbours_of(Index v) {
@@ -306,7 +279,7 @@ class GraphReader {
   std::int64_t line_of_header_ = 1;
   std::vector<std::int64_t> sizes_;
   std::vector<std::int64_t> vertex_weights_;
-  std::vector<Offset> offsets_{0};
+  std::vector<Offset> offsets_;
   std::vector<Neighbour> neighbours_;  // neighbours of all vertices; those of each vertex ascend
 };
 
