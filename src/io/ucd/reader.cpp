@@ -41,7 +41,8 @@ class Reader {
     const std::int64_t node_values = count_of_values("nodes");
     const std::int64_t cell_values = count_of_values("cells");
     metadata_->model_values = count_of_values("the model");
-    if (!take_end()) fail_at_more("counts", std::string(kFirstLine));
+    if (!in_.at_line_end()) fail_at_more(in_, "counts", kFirstLine);
+    (void)in_.raw_line();
     read_nodes(nodes);
     read_cells(cells);
     names_.take(Association::cells, std::string(kLabel));
@@ -64,52 +65,69 @@ class Reader {
     return count;
   }
 
-  /// Takes the end of a line; returns false if the line goes on.
-  bool take_end() {
-    if (!in_.at_line_end()) return false;
-    (void)in_.raw_line();
-    return true;
+  [[noreturn]] static void fail_at_more(const Scanner& in, std::string_view of, std::string_view wanted) {
+    in.fail(fmt::format("the line of {} has more than it should", of), std::string(wanted));
   }
 
-  [[noreturn]] void fail_at_more(std::string_view of, const std::string& wanted) const {
-    in_.fail(fmt::format("the line of {} has more than it should", of), wanted);
-  }
-
-  Index number(std::string_view what) {
-    const auto number = in_.integer<std::int64_t>(what);
+  static Index number(Scanner& in, std::string_view what) {
+    const auto number = in.integer<std::int64_t>(what);
     if (number < 0 || number > kMaxIndex) {
-      in_.fail(fmt::format("{} is {}", what, number), "0 to 2147483647 are possible");
+      in.fail(fmt::format("{} is {}", what, number), "0 to 2147483647 are possible");
     }
     return static_cast<Index>(number);
   }
 
-  /// Returns whether the next number and the `count` − 1 after it may be numbers of nodes or cells.
-  [[nodiscard]] bool can_count_from_next(Index count) const {
-    Scanner ahead = in_;
-    Index first = 0;
-    return ahead.take_number(first) && first >= 0 && first <= kMaxIndex - count;
-  }
-
-  /// Reads nodes on all threads, up to the first one that is not numbered on or is irregular. Returns how
-  /// many it read.
-  Index read_regular_nodes() {
-    const Index count = mesh_.vertex_count();
-    if (!can_count_from_next(count)) return 0;
-    const Index regular = read_numbered_records(in_, count, node_numbers_, [&](Scanner& in, Index v) {
-      return std::ranges::all_of(mesh_.points[v], [&](double& x) { return in.take_finite(x); });
-    });
-    if (regular > 0) (void)take_end();
-    return regular;
-  }
-
   void read_nodes(Index count) {
     mesh_.points.resize(static_cast<std::size_t>(count));
-    for (Point& point : std::span(mesh_.points).subspan(static_cast<std::size_t>(read_regular_nodes()))) {
-      const Index id = number("the number of a node");
+    const auto read_point = [&](Scanner& in, Index v) {
+      for (double& coordinate : mesh_.points[v]) coordinate = in.finite("a coordinate");
+      if (!in.at_line_end()) fail_at_more(in, "a node", "a number and three coordinates are needed");
+      return true;
+    };
+    const Index regular = read_numbered_records(in_, count, node_numbers_, read_point, 0, kMaxIndex);
+    for (Index v = regular; v < count; ++v) {
+      const Index id = number(in_, "the number of a node");
       if (!node_numbers_.add(id)) in_.fail(fmt::format("node {} is given twice", id), "numbers must differ");
-      for (double& coordinate : point) coordinate = in_.finite("a coordinate");
-      if (!take_end()) fail_at_more("a node", "a number and three coordinates are needed");
+      read_point(in_, v);
     }
+    end_records(count);
+  }
+
+  /// Takes the line end after the last of `count` records.
+  void end_records(Index count) {
+    if (count > 0) (void)in_.raw_line();
+  }
+
+  /// A cell's line after its number.
+  struct CellLine {
+    std::int64_t material;
+    const CellKind* kind;
+    std::array<Index, 8> cell{};  ///< its vertices
+  };
+
+  /// Reads the line of a cell after its number, which errors name. `likely` is tried first as its type.
+  CellLine read_cell(Scanner& in, Index id, const CellKind* likely) const {
+    CellLine line{.material = in.integer<std::int64_t>("the material of a cell"), .kind = likely};
+    const std::string_view name = in.word("the type of a cell");
+    if (likely == nullptr || name != likely->name) line.kind = &kind_named(in, name);
+    const auto nodes = static_cast<std::size_t>(line.kind->nodes);
+    std::array<Index, 8> as_given{};
+    for (std::size_t k = 0; k < nodes; ++k) {
+      const Index node = number(in, "a node of the cell");
+      as_given[k] = node_numbers_.find(node);
+      if (as_given[k] < 0) {
+        in.fail(fmt::format("a node of cell {} is {}, which the file does not have", id, node),
+                "correct the cell, or add the node");
+      }
+    }
+    for (std::size_t k = 0; k < nodes; ++k)
+      line.cell[k] = as_given[static_cast<std::size_t>(line.kind->places[k])];
+    if (!in.at_line_end()) {
+      fail_at_more(
+          in, fmt::format("cell {}", id),
+          fmt::format("a cell of type {} has {} nodes, without any on its edges", line.kind->name, nodes));
+    }
+    return line;
   }
 
   /// Returns the type of the next cell, null if there is none.
@@ -124,66 +142,39 @@ class Reader {
   /// cell or is irregular.
   void read_regular_cells(Index count, std::vector<std::int64_t>& materials) {
     const CellKind* const first = next_kind();
-    if (first == nullptr || !can_count_from_next(count)) return;
+    if (first == nullptr) return;
     Cells& cells = mesh_.cells;
     append_cells(cells, first->shape, first->nodes, count);
     materials.resize(static_cast<std::size_t>(count));
-    const Index regular = read_numbered_records(in_, count, cell_numbers_, [&](Scanner& in, Index c) {
-      if (!in.take_number(materials[c])) return false;
-      const std::string_view name = in.word("the type of a cell");
-      const CellKind* const kind = name == first->name ? first : find_kind(name);
-      if (kind == nullptr || kind->nodes > first->nodes) return false;
-      std::array<Index, 8> as_given{};
-      const auto nodes = static_cast<std::size_t>(kind->nodes);
-      for (std::size_t k = 0; k < nodes; ++k) {
-        Index node = 0;
-        if (!in.take_number(node)) return false;
-        as_given[k] = node_numbers_.find(node);
-        if (as_given[k] < 0) return false;
-      }
-      cells.shapes[c] = kind->shape;
-      const std::span<Index> cell = cells[c];
-      for (std::size_t k = 0; k < nodes; ++k) cell[k] = as_given[static_cast<std::size_t>(kind->places[k])];
+    const auto read = [&](Scanner& in, Index c) {
+      const CellLine line = read_cell(in, c, first);  // an error is found again, with the cell's number
+      if (line.kind->nodes > first->nodes) return false;
+      materials[c] = line.material;
+      cells.shapes[c] = line.kind->shape;
+      std::copy_n(line.cell.begin(), line.kind->nodes, cells[c].begin());
       return true;
-    });
+    };
+    const Index regular = read_numbered_records(in_, count, cell_numbers_, read, 0, kMaxIndex);
     trim_to_corners(cells, 0, regular);
     materials.resize(static_cast<std::size_t>(regular));
-    if (regular > 0) (void)take_end();
   }
 
   void read_cells(Index count) {
     std::vector<std::int64_t> materials;
     materials.reserve(static_cast<std::size_t>(count));
-    std::array<Index, 8> cell{};
     read_regular_cells(count, materials);
     for (Index c = mesh_.cell_count(); c < count; ++c) {
-      const Index id = number("the number of a cell");
+      const Index id = number(in_, "the number of a cell");
       if (cells_are_numbered_ && !cell_numbers_.add(id)) {
         cells_are_numbered_ = false;
         notes_.push_back(fmt::format("{}:{}: cell {} is given twice; all cells are now numbered by position",
                                      in_.file(), in_.line(), id));
       }
-      materials.push_back(in_.integer<std::int64_t>("the material of a cell"));
-      const CellKind& kind = kind_named(in_.word("the type of a cell"));
-      const auto nodes = static_cast<std::size_t>(kind.nodes);
-      for (std::size_t k = 0; k < nodes; ++k) {
-        const Index node = number("a node of the cell");
-        const Index v = node_numbers_.find(node);
-        if (v < 0) {
-          in_.fail(fmt::format("a node of cell {} is {}, which the file does not have", id, node),
-                   "correct the cell, or add the node");
-        }
-        cell[k] = v;
-      }
-      std::array<Index, 8> in_order{};
-      for (std::size_t k = 0; k < nodes; ++k) in_order[k] = cell[static_cast<std::size_t>(kind.places[k])];
-      if (!take_end()) {
-        fail_at_more(
-            fmt::format("cell {}", id),
-            fmt::format("a cell of type {} has {} nodes, without any on its edges", kind.name, nodes));
-      }
-      mesh_.cells.push_back(kind.shape, {in_order.data(), nodes});
+      const CellLine line = read_cell(in_, id, nullptr);
+      materials.push_back(line.material);
+      mesh_.cells.push_back(line.kind->shape, {line.cell.data(), static_cast<std::size_t>(line.kind->nodes)});
     }
+    end_records(count);
     mesh_.data.push_back(
         {std::string(kLabel), Association::cells, 1, label_values(std::move(materials)), {}, {}});
   }
@@ -195,10 +186,10 @@ class Reader {
     return found == kCellKinds.end() ? nullptr : found;
   }
 
-  const CellKind& kind_named(std::string_view name) const {
+  static const CellKind& kind_named(const Scanner& in, std::string_view name) {
     if (const CellKind* const kind = find_kind(name)) return *kind;
-    in_.fail(fmt::format("a cell has the type '{}'", shown(name)),
-             "known are " + join(kCellKinds, [](const CellKind& kind) { return kind.name; }));
+    in.fail(fmt::format("a cell has the type '{}'", shown(name)),
+            "known are " + join(kCellKinds, [](const CellKind& kind) { return kind.name; }));
   }
 
   // ---- data
@@ -219,40 +210,36 @@ class Reader {
     }
     const std::string what = fmt::format("a value of a {}", item);
     const IdMap* const places = of_nodes || cells_are_numbered_ ? &numbers : nullptr;
-    const Index regular = read_regular_records(in_, rows, [&](Scanner& in, Index row) {
-      Index id = 0;
-      if (!in.take_number(id) || id < 0 || (places != nullptr && places->id(row) != id)) return false;
+    const auto read_values = [&](Scanner& in, Index place) {
       for (std::vector<double>& array : arrays) {
         const std::size_t components = array.size() / static_cast<std::size_t>(rows);
-        const std::span own =
-            std::span(array).subspan(static_cast<std::size_t>(row) * components, components);
-        if (!std::ranges::all_of(own, [&](double& value) { return in.take_number(value); })) return false;
+        for (std::size_t k = 0; k < components; ++k)
+          array[static_cast<std::size_t>(place) * components + k] = in.real(what);
       }
+      if (!in.at_line_end())
+        fail_at_more(in, fmt::format("data of a {}", item), fmt::format("{} values are needed", values));
       return true;
+    };
+    const Index regular = read_regular_records(in_, rows, [&](Scanner& in, Index row) {
+      Index id = 0;
+      const bool is_next = in.take_number(id) && id >= 0 && (places == nullptr || places->id(row) == id);
+      return is_next && read_values(in, row);
     });
-    if (regular > 0) (void)take_end();
     std::vector<bool> seen(static_cast<std::size_t>(rows), false);
     std::fill(seen.begin(), seen.begin() + regular, true);
     for (Index row = regular; row < rows; ++row) {
       const Index place = place_of_row(places, row, item);
       if (seen[place]) in_.fail(fmt::format("the {} has data twice", item), "remove one of the lines");
       seen[place] = true;
-      for (std::size_t i = 0; i < arrays.size(); ++i) {
-        const Index components = mesh_.data[first + i].components;
-        for (Index k = 0; k < components; ++k) {
-          arrays[i][Offset{place} * components + k] = in_.real(what);
-        }
-      }
-      if (!take_end()) {
-        fail_at_more(fmt::format("data of a {}", item), fmt::format("{} values are needed", values));
-      }
+      read_values(in_, place);
     }
+    end_records(rows);
     for (std::size_t i = 0; i < arrays.size(); ++i) mesh_.data[first + i].values = std::move(arrays[i]);
   }
 
   /// Takes the number of a line of data; returns the position of its item, `row` if cells have no numbers.
   Index place_of_row(const IdMap* numbers, Index row, std::string_view item) {
-    const Index id = number("the number of a line of data");
+    const Index id = number(in_, "the number of a line of data");
     const Index place = numbers == nullptr ? row : numbers->find(id);
     if (place < 0) in_.fail(fmt::format("{} {} does not exist", item, id), "correct its number");
     return place;
@@ -272,7 +259,8 @@ class Reader {
       in_.fail(fmt::format("the components of the arrays do not add up to {}", values),
                "correct them, or the first line of the file");
     }
-    if (!take_end()) fail_at_more("the sizes of arrays", "a size for each array is needed");
+    if (!in_.at_line_end()) fail_at_more(in_, "the sizes of arrays", "a size for each array is needed");
+    (void)in_.raw_line();
     for (const Index size : components) {
       if (in_.bytes_left() == 0) in_.fail("the label of an array is missing", "the file may be cut short");
       const std::string line(in_.raw_line());
