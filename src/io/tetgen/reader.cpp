@@ -23,20 +23,19 @@ namespace {
 
 constexpr char kComment = '#';
 
-/// The content of one file of cells.
-struct CellFile {
+/// The records of one file beside their points.
+struct Records {
   Index count = 0;
   IdMap numbering;
-  std::vector<std::int64_t> markers;  // one for each cell, or none
+  std::vector<std::int64_t> markers;  // one for each record, or none
   std::vector<double> attributes;
-  Index attributes_per_cell = 0;
+  Index attributes_of_each = 0;
 };
 
 struct ReadContext {
   Notes& notes;
   Mesh mesh = {};
-  IdMap points = {};
-  std::array<CellFile, 4> parts = {};
+  std::array<Records, 4> parts = {};
   std::string mark = {};  ///< mark of the file of points
   std::shared_ptr<TetGenMetadata> metadata = std::make_shared<TetGenMetadata>();
   bool second_order = false;
@@ -52,47 +51,29 @@ void begin_record(Scanner& in, std::string_view what) {
   }
 }
 
-/// Takes the next number of a record, which must be on the same line.
-std::string_view column(Scanner& in, std::string_view what) {
+/// Fails at the end of the line, where a record has its next number.
+void expect_column(Scanner& in, std::string_view what) {
   if (in.at_line_end()) {
     in.fail(fmt::format("unexpected end of line; expected {}", what),
             "the header gives more columns, or the file is cut short");
   }
-  return in.word(what);
+}
+
+std::int64_t integer(Scanner& in, std::string_view what) {
+  expect_column(in, what);
+  return in.integer<std::int64_t>(what);
 }
 
 [[noreturn]] void fail_columns(const Scanner& in) {
   in.fail("the line has more columns than the header gives", "correct the header or remove the rest");
 }
 
-/// Ends the lines of records. Columns after those that the header gives are left out, as TetGen does, if all
-/// records have equally many.
-class RecordEnds {
- public:
-  /// @param has_records  whether records without such columns were read before
-  explicit RecordEnds(bool has_records) : further_(has_records ? 0 : -1) {}
-
-  void end(Scanner& in) {
-    Index further = 0;
-    for (; !in.at_line_end(); ++further) (void)in.word("a column");
-    if (further_ < 0) further_ = further;
-    if (further > further_) fail_columns(in);
-    if (further < further_) in.fail("the line has fewer columns than the first one", "add those that lack");
-  }
-  void note_columns_left_out(File file, Notes& notes) const {
-    if (further_ <= 0) return;
-    notes.push_back(
-        fmt::format("{}: columns after those that its header gives are left out ({} in each line)",
-                    kExtensions[file], further_));
-  }
-
- private:
-  Index further_;  ///< such columns of each record; −1 before the first one
-};
-
 /// Reads an integer; accepts 2.0 because some writers print markers this way.
 std::int64_t whole(Scanner& in, std::string_view what) {
-  const std::string_view text = column(in, what);
+  expect_column(in, what);
+  std::int64_t number = 0;
+  if (in.take_number(number)) return number;
+  const std::string_view text = in.word(what);
   if (text.find_first_of(".eE") == std::string_view::npos) return parse_integer<std::int64_t>(in, text, what);
   const double value = parse_real(in, text, what);
   if (value != std::floor(value) || std::abs(value) > 1e15) {
@@ -106,16 +87,10 @@ template <std::size_t N>
 std::array<std::int64_t, N> header(Scanner& in, std::array<std::int64_t, N> standard) {
   begin_record(in, "the header");
   for (std::size_t i = 0; i < N && (i == 0 || !in.at_line_end()); ++i) {
-    standard[i] =
-        parse_integer<std::int64_t>(in, column(in, "a number of the header"), "a number of the header");
+    standard[i] = integer(in, "a number of the header");
   }
   if (!in.at_line_end()) fail_columns(in);
   return standard;
-}
-
-/// Checks the number of records, which must fit the rest of the file.
-Index checked_records(Scanner& in, std::int64_t records, std::string_view what, std::int64_t columns) {
-  return in.checked_count(records, what, 2 * columns);
 }
 
 std::int64_t checked_attributes(Scanner& in, std::int64_t attributes) {
@@ -134,14 +109,45 @@ bool checked_markers(Scanner& in, std::int64_t markers) {
 }
 
 void add_number(Scanner& in, IdMap& numbering, std::string_view what) {
-  const auto number = parse_integer<std::int64_t>(in, column(in, what), what);
+  const std::int64_t number = integer(in, what);
   if (!numbering.add(number))
     in.fail(fmt::format("{} {} is given twice", what, number), "each must be unique");
 }
 
-/// Takes as many numbers as `values` has; returns false if a number is missing or is not regular.
-bool take_all(Scanner& in, std::span<double> values) {
-  return std::ranges::all_of(values, [&](double& value) { return in.take_number(value); });
+/// Reads the records of a file: for each its number, what `read_item(in, i)` reads, attributes and, if
+/// `marked`, a marker. Columns after those that the header gives are left out, as TetGen does, if all records
+/// have equally many.
+template <class ReadItem>
+void read_items(Scanner& in, File file, bool marked, ReadContext& to, const ReadItem& read_item) {
+  Records& part = to.parts[file];
+  const auto width = static_cast<std::size_t>(part.attributes_of_each);
+  part.attributes.resize(static_cast<std::size_t>(part.count) * width);
+  part.markers.resize(marked ? part.count : 0);
+  const auto read = [&](Scanner& record, Index i) {
+    read_item(record, i);
+    for (double& value : std::span(part.attributes).subspan(static_cast<std::size_t>(i) * width, width)) {
+      expect_column(record, "an attribute");
+      value = record.real("an attribute");
+    }
+    if (marked) part.markers[i] = whole(record, "the boundary marker");
+    return true;
+  };
+  const Index regular = read_numbered_records(in, part.count, part.numbering, read);
+  Index further = regular > 0 ? 0 : -1;  // columns that the header does not give; −1 before the first record
+  for (Index i = regular; i < part.count; ++i) {
+    begin_record(in, file == kNode ? "a point" : "a cell");
+    add_number(in, part.numbering, file == kNode ? "the point" : "the cell");
+    read(in, i);
+    Index own = 0;
+    for (; !in.at_line_end(); ++own) (void)in.word("a column");
+    if (further < 0) further = own;
+    if (own > further) fail_columns(in);
+    if (own < further) in.fail("the line has fewer columns than the first one", "add those that lack");
+  }
+  if (further <= 0) return;
+  to.notes.push_back(
+      fmt::format("{}: columns after those that its header gives are left out ({} in each line)",
+                  kExtensions[file], further));
 }
 
 /// Removes the mark of a mesh's files from `comments`, the comments at the end of a file. Returns the mark;
@@ -178,52 +184,35 @@ void read_points(Scanner& in, ReadContext& to) {
   const bool marked = checked_markers(in, has_markers);
   if (records == 0) in.fail("the file has no points", "a mesh needs some");
   const Index count =
-      checked_records(in, records, "the number of points", 1 + dimension + attributes + has_markers);
+      in.checked_count(records, "the number of points", 2 * (1 + dimension + attributes + has_markers));
 
   Mesh& mesh = to.mesh;
   mesh.dimension = static_cast<int>(dimension);
   mesh.points.resize(count, {0, 0, 0});
-  std::vector<double> values(static_cast<std::size_t>(count * attributes));
-  std::vector<std::int64_t> markers(marked ? count : 0);
-  const auto attributes_of = [&](Index v) {
-    return std::span(values).subspan(static_cast<std::size_t>(v * attributes),
-                                     static_cast<std::size_t>(attributes));
-  };
-  const Index regular = read_numbered_records(in, count, to.points, [&](Scanner& part, Index v) {
+  Records& part = to.parts[kNode];
+  part.count = count;
+  part.attributes_of_each = static_cast<Index>(attributes);
+  read_items(in, kNode, marked, to, [&](Scanner& record, Index v) {
     for (int k = 0; k < mesh.dimension; ++k) {
-      if (!part.take_finite(mesh.points[v][k])) return false;
+      expect_column(record, "a coordinate");
+      mesh.points[v][k] = record.finite("a coordinate");
     }
-    return take_all(part, attributes_of(v)) && (!marked || part.take_number(markers[v]));
   });
-  RecordEnds ends(regular > 0);
-  for (Index v = regular; v < count; ++v) {
-    begin_record(in, "a point");
-    add_number(in, to.points, "the point");
-    for (int k = 0; k < mesh.dimension; ++k) {
-      const double x = parse_real(in, column(in, "a coordinate"), "a coordinate");
-      if (!std::isfinite(x)) in.fail("a coordinate is not finite", "a finite number is needed");
-      mesh.points[v][k] = x;
-    }
-    for (double& value : attributes_of(v)) value = parse_real(in, column(in, "an attribute"), "an attribute");
-    if (marked) markers[v] = whole(in, "the boundary marker");
-    ends.end(in);
-  }
-  ends.note_columns_left_out(kNode, to.notes);
 
   // As in TetGen, numbers begin at 0 if the first one is 0, else at 1. If they are not consecutive, they
   // begin at 0 if any of them is 0: so another order of the points does not change the points that cells
   // name.
-  to.metadata->base = to.points.id(0) == 0 ? 0 : 1;
-  mesh.vertex_ids = to.points.ids_unless_from(to.metadata->base);
+  to.metadata->base = part.numbering.id(0) == 0 ? 0 : 1;
+  mesh.vertex_ids = part.numbering.ids_unless_from(to.metadata->base);
   if (std::find(mesh.vertex_ids.begin(), mesh.vertex_ids.end(), 0) != mesh.vertex_ids.end())
     to.metadata->base = 0;
   if (attributes > 0) {
     mesh.data.push_back(
-        {"attribute", Association::vertices, static_cast<Index>(attributes), std::move(values), {}, {}});
+        {"attribute", Association::vertices, part.attributes_of_each, std::move(part.attributes), {}, {}});
   }
   if (marked) {
     mesh.data.push_back(
-        {std::string(kLabel), Association::vertices, 1, label_values(std::move(markers)), {}, {}});
+        {std::string(kLabel), Association::vertices, 1, label_values(std::move(part.markers)), {}, {}});
   }
 }
 
@@ -233,8 +222,7 @@ void read_points(Scanner& in, ReadContext& to) {
 void read_cell_points(Scanner& in, const IdMap& points, std::span<const int> places, std::span<Index> cell) {
   std::array<Index, 10> as_given{};
   for (std::size_t k = 0; k < places.size(); ++k) {
-    const auto number =
-        parse_integer<std::int64_t>(in, column(in, "a point of the cell"), "a point of the cell");
+    const std::int64_t number = integer(in, "a point of the cell");
     as_given[k] = points.find(number);
     if (as_given[k] < 0) {
       in.fail(fmt::format("the cell names point {}, which .node does not have", number),
@@ -247,52 +235,25 @@ void read_cell_points(Scanner& in, const IdMap& points, std::span<const int> pla
 
 /// Reads all cells of a file after its header; every line has `nodes` points, attributes and a marker.
 void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, ReadContext& to) {
-  CellFile& part = to.parts[file];
   const std::span<const int> order = places(file, nodes, false);
-  Cells& cells = to.mesh.cells;
-  const Index first = cells.size();
-  append_cells(cells, shape, nodes, part.count);
-  part.attributes.resize(Offset{part.count} * part.attributes_per_cell);
-  part.markers.resize(marked ? part.count : 0);
-  const auto attributes_of = [&](Index c) {
-    return std::span(part.attributes)
-        .subspan(Offset{c} * part.attributes_per_cell, static_cast<std::size_t>(part.attributes_per_cell));
-  };
-  const Index regular = read_numbered_records(in, part.count, part.numbering, [&](Scanner& records, Index c) {
-    std::int64_t number = 0;
-    const std::span<Index> cell = cells[first + c];
-    std::array<Index, 10> as_given{};
-    for (int k = 0; k < nodes; ++k) {
-      if (!records.take_number(number)) return false;
-      as_given[k] = to.points.find(number);
-      if (as_given[k] < 0) return false;
-    }
-    for (int k = 0; k < nodes; ++k) cell[k] = as_given[order[k]];
-    return take_all(records, attributes_of(c)) && (!marked || records.take_number(part.markers[c]));
+  const Index first = to.mesh.cells.size();
+  append_cells(to.mesh.cells, shape, nodes, to.parts[file].count);
+  read_items(in, file, marked, to, [&](Scanner& record, Index c) {
+    read_cell_points(record, to.parts[kNode].numbering, order, to.mesh.cells[first + c]);
   });
-  RecordEnds ends(regular > 0);
-  for (Index c = regular; c < part.count; ++c) {
-    begin_record(in, "a cell");
-    add_number(in, part.numbering, "the cell");
-    read_cell_points(in, to.points, order, cells[first + c]);
-    for (double& value : attributes_of(c)) value = parse_real(in, column(in, "an attribute"), "an attribute");
-    if (marked) part.markers[c] = whole(in, "the boundary marker");
-    ends.end(in);
-  }
-  ends.note_columns_left_out(file, to.notes);
 }
 
 /// Makes a label of TetGen's region attribute, one whole number for each cell. Other attributes stay.
-void take_regions_as_markers(CellFile& part) {
+void take_regions_as_markers(Records& part) {
   using Limits = std::numeric_limits<std::int32_t>;
-  const bool regions = part.attributes_per_cell == 1 &&
+  const bool regions = part.attributes_of_each == 1 &&
                        std::all_of(part.attributes.begin(), part.attributes.end(), [](double x) {
                          return x == std::floor(x) && x >= Limits::min() && x <= Limits::max();
                        });
   if (!regions) return;
   part.markers.assign(part.attributes.begin(), part.attributes.end());
   part.attributes.clear();
-  part.attributes_per_cell = 0;
+  part.attributes_of_each = 0;
 }
 
 void read_ele(Scanner& in, ReadContext& to) {
@@ -304,24 +265,13 @@ void read_ele(Scanner& in, ReadContext& to) {
             plane ? "3 or 6 are possible in two dimensions"
                   : "4 or 10 (tetrahedra) or 3 or 6 (triangles) are possible");
   }
-  CellFile& part = to.parts[kEle];
-  part.attributes_per_cell = static_cast<Index>(checked_attributes(in, attributes));
-  part.count = checked_records(in, records, "the number of cells", 1 + nodes + attributes);
+  Records& part = to.parts[kEle];
+  part.attributes_of_each = static_cast<Index>(checked_attributes(in, attributes));
+  part.count = in.checked_count(records, "the number of cells", 2 * (1 + nodes + attributes));
   to.metadata->nodes_in_ele = static_cast<int>(nodes);
   to.second_order = nodes == 6 || nodes == 10;
   read_cells(in, kEle, triangles ? Shape::triangle : Shape::tetrahedron, static_cast<int>(nodes), false, to);
   take_regions_as_markers(part);
-}
-
-/// Counts the words of the first record's line after its number, without taking them.
-int columns_of_first_record(Scanner& in) {
-  if (in.at_end()) return 0;
-  std::string_view line = in.peek_line();
-  line = line.substr(0, line.find(kComment));
-  int words = -1;
-  for (; !next_word(line, " \t\f\v").empty(); ++words) {
-  }
-  return words;
 }
 
 [[noreturn]] void fail_neighbours(const Scanner& in) {
@@ -336,11 +286,12 @@ void read_boundary(Scanner& in, File file, ReadContext& to) {
   const auto [records, has_markers] = header<2>(in, {0, 0});
   const bool marked = checked_markers(in, has_markers);
   const int least = file == kFace ? 3 : 2;
-  CellFile& part = to.parts[file];
-  part.count = checked_records(in, records, "the number of cells", 1 + least + has_markers);
+  Records& part = to.parts[file];
+  part.count = in.checked_count(records, "the number of cells", 2 * (1 + least + has_markers));
   if (part.count == 0) return;
 
-  const int columns = columns_of_first_record(in) - static_cast<int>(has_markers);
+  // the first record has its number, its points and its marker
+  const int columns = in.at_end() ? 0 : in.words_in_line() - 1 - static_cast<int>(has_markers);
   int nodes = columns;
   if (file == kFace) {
     if (columns == 5 || columns == 8) fail_neighbours(in);
@@ -406,12 +357,10 @@ void settle_face_order(ReadContext& to) {
 /// Sets the ids of cells if the ids in a file are not consecutive. Each file numbers its cells separately.
 void set_cell_ids(ReadContext& to) {
   const int base = to.metadata->base;
-  if (std::all_of(to.parts.begin(), to.parts.end(),
-                  [&](const CellFile& part) { return part.numbering.runs_from(base); })) {
+  if (std::ranges::all_of(kCellFiles, [&](File file) { return to.parts[file].numbering.runs_from(base); }))
     return;
-  }
   for (const File file : kCellFiles) {
-    const CellFile& part = to.parts[file];
+    const Records& part = to.parts[file];
     for (Index c = 0; c < part.count; ++c) to.mesh.cell_ids.push_back(part.numbering.id(c));
   }
 }
@@ -420,9 +369,9 @@ void set_cell_data(ReadContext& to) {
   Mesh& mesh = to.mesh;
 
   // only cells of .ele have attributes
-  CellFile& ele = to.parts[kEle];
-  if (ele.attributes_per_cell > 0 && ele.count > 0) {
-    DataArray array{"attribute", Association::cells, ele.attributes_per_cell, std::move(ele.attributes), {},
+  Records& ele = to.parts[kEle];
+  if (ele.attributes_of_each > 0 && ele.count > 0) {
+    DataArray array{"attribute", Association::cells, ele.attributes_of_each, std::move(ele.attributes), {},
                     {}};
     for (Index c = 0; ele.count < mesh.cell_count() && c < ele.count; ++c) array.indices.push_back(c);
     mesh.data.push_back(std::move(array));
@@ -433,7 +382,7 @@ void set_cell_data(ReadContext& to) {
   std::vector<Index> rows;
   Index first = 0;
   for (const File file : kCellFiles) {
-    const CellFile& part = to.parts[file];
+    const Records& part = to.parts[file];
     labels.insert(labels.end(), part.markers.begin(), part.markers.end());
     for (Index c = 0; c < index_size(part.markers); ++c) rows.push_back(first + c);
     first += part.count;

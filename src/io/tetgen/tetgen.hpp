@@ -22,6 +22,7 @@ namespace meshorder::tetgen {
 /// The files of one mesh: points, and the files of cells beside it.
 enum File : std::uint8_t { kNode, kEle, kFace, kEdge };
 inline constexpr std::array<std::string_view, 4> kExtensions{".node", ".ele", ".face", ".edge"};
+inline constexpr std::array kFiles{kNode, kEle, kFace, kEdge};
 inline constexpr std::array kCellFiles{kEle, kFace, kEdge};
 
 /// Data of TetGen's files beyond the mesh.

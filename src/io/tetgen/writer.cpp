@@ -52,13 +52,6 @@ namespace {
 
 // ---- the cells of each file
 
-/// The cells of each file, in their order, and how many points each has.
-struct CellsOfFiles {
-  std::array<std::vector<Index>, 4> cells;
-  std::array<int, 4> nodes{0, 0, 0, 0};
-  int dimension = 3;
-};
-
 bool holds(const Mesh& /*mesh*/, Shape shape, int vertices) {
   return (shape == Shape::tetrahedron && (vertices == 4 || vertices == 10)) ||
          (shape == Shape::triangle && (vertices == 3 || vertices == 6)) ||
@@ -96,36 +89,6 @@ std::string conflict(const Mesh& mesh) {
   if (own || nodes_of(Shape::tetrahedron) > 0) return {};
   if (nodes_of(Shape::triangle) == 0) return "TetGen holds lines only together with tetrahedra or triangles";
   return is_plane(mesh) ? "" : "TetGen holds triangles alone only in the plane z = 0";
-}
-
-CellsOfFiles layout_of(const Mesh& mesh, const TetGenMetadata& metadata, bool own) {
-  const bool solid = has_shape(mesh, Shape::tetrahedron);
-  CellsOfFiles layout;
-  layout.dimension = solid ? 3 : own ? mesh.dimension : 2;
-  layout.nodes[kEle] = metadata.nodes_in_ele;
-  // triangles are the cells of a plane mesh, or the boundary of a solid mesh
-  const bool in_ele =
-      !solid && (layout.dimension == 2 || metadata.nodes_in_ele == 3 || metadata.nodes_in_ele == 6);
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    const Shape shape = mesh.cells.shapes[c];
-    const File file = shape == Shape::line ? kEdge : shape == Shape::triangle && !in_ele ? kFace : kEle;
-    const int nodes = mesh.cells.vertex_count(c);
-    if (layout.cells[file].empty()) layout.nodes[file] = nodes;
-    layout.cells[file].push_back(c);
-  }
-  return layout;
-}
-
-/// Fails if a file of an earlier mesh would be read as part of this one.
-void refuse_leftovers(const CellsOfFiles& layout, const TetGenMetadata& metadata, const FilePath& path) {
-  for (const File file : kCellFiles) {
-    const FilePath other = path.companion(kExtensions[file]);
-    if (!layout.cells[file].empty() || metadata.parts[file].present || !other.exists()) continue;
-    throw InputError(path.string(),
-                     fmt::format("{} is beside it and would be read as part of this mesh",
-                                 other.path().filename().string()),
-                     "remove that file or choose another name");
-  }
 }
 
 // ---- columns
@@ -214,15 +177,25 @@ bool has_markers(const Labels& labels, const std::vector<Index>& items, std::str
 
 constexpr std::int64_t kLargestNumber = std::numeric_limits<std::int64_t>::max();  // number of a vertex
 
+/// What a file holds of its items, the points or cells.
+struct FileContent {
+  std::vector<Index> items;
+  int nodes = 0;  ///< of each cell
+  std::vector<Column> attributes;
+  bool marked = false;
+};
+
 struct WriteContext {
   const Mesh& mesh;
   const TetGenMetadata& metadata;
-  CellsOfFiles layout;
+  int dimension;
   bool own_ids;     // the ids came from TetGen's files; other ids are not written
   bool vertex_ids;  // the ids of vertices are written
   Labels vertex_labels;
   Labels cell_labels;
+  std::array<FileContent, 4> files = {};
 
+  [[nodiscard]] const Labels& labels(File file) const { return file == kNode ? vertex_labels : cell_labels; }
   [[nodiscard]] std::int64_t vertex_number(Index v) const {
     return vertex_ids ? mesh.vertex_ids[v] : v + std::int64_t{metadata.base};
   }
@@ -232,78 +205,89 @@ struct WriteContext {
   }
 };
 
-void write_points(OutputFile& out, const WriteContext& from, Notes& notes) {
-  const Mesh& mesh = from.mesh;
-  const std::vector<Index> all = index_range(0, mesh.vertex_count());
-  const auto columns = attribute_columns(mesh, Association::vertices, all, notes);
-  note_lost_names(columns, ".node", notes);
-  const bool marked = has_markers(from.vertex_labels, all, ".node", notes);
+/// Distributes the points and cells among the files.
+void distribute(WriteContext& from, bool solid) {
+  from.files[kNode].items = index_range(0, from.mesh.vertex_count());
+  const int in_ele = from.metadata.nodes_in_ele;
+  from.files[kEle].nodes = in_ele;
+  // triangles are the cells of a plane mesh, or the boundary of a solid mesh
+  const bool triangles_in_ele = !solid && (from.dimension == 2 || in_ele == 3 || in_ele == 6);
+  for (Index c = 0; c < from.mesh.cell_count(); ++c) {
+    const Shape shape = from.mesh.cells.shapes[c];
+    const bool is_face = shape == Shape::triangle && !triangles_in_ele;
+    FileContent& file = from.files[shape == Shape::line ? kEdge : is_face ? kFace : kEle];
+    if (file.items.empty()) file.nodes = from.mesh.cells.vertex_count(c);
+    file.items.push_back(c);
+  }
+}
 
-  out.print("{}  {}  {}  {}\n", mesh.vertex_count(), from.layout.dimension, columns.size(), marked ? 1 : 0);
-  write_rows(out, mesh.vertex_count(), [&](Text& row, Index v) {
-    row.integer("", from.vertex_number(v));
-    for (int k = 0; k < from.layout.dimension; ++k) row.real("  ", mesh.points[v][k]);
-    for (const Column& column : columns) row.print("  {}", text_of(column, v));
-    if (marked) row.integer("  ", from.vertex_labels.values[v]);
+/// Fails if a file of an earlier mesh would be read as part of this one.
+void refuse_leftovers(const WriteContext& from, const FilePath& path) {
+  for (const File file : kCellFiles) {
+    const FilePath other = path.companion(kExtensions[file]);
+    if (!from.files[file].items.empty() || from.metadata.parts[file].present || !other.exists()) continue;
+    throw InputError(path.string(),
+                     fmt::format("{} is beside it and would be read as part of this mesh",
+                                 other.path().filename().string()),
+                     "remove that file or choose another name");
+  }
+}
+
+/// Chooses the attributes and markers of a file.
+void choose_columns(WriteContext& from, File file, Notes& notes) {
+  FileContent& content = from.files[file];
+  if (file == kNode || file == kEle) {
+    const Association of = file == kNode ? Association::vertices : Association::cells;
+    content.attributes = attribute_columns(from.mesh, of, content.items, notes);
+    note_lost_names(content.attributes, kExtensions[file], notes);
+  }
+  if (file != kEle) content.marked = has_markers(from.labels(file), content.items, kExtensions[file], notes);
+}
+
+void write_items(OutputFile& out, File file, const WriteContext& from) {
+  const Mesh& mesh = from.mesh;
+  const FileContent& content = from.files[file];
+  out.print("{}", content.items.size());
+  if (file == kNode || file == kEle)
+    out.print("  {}  {}", file == kNode ? from.dimension : content.nodes, content.attributes.size());
+  if (file != kEle) out.print("  {}", content.marked ? 1 : 0);
+  out.write("\n");
+  const auto order = places(file, content.nodes, from.metadata.faces_name_opposite_edges);
+  write_rows(out, index_size(content.items), [&](Text& row, Index i) {
+    const Index item = content.items[i];
+    if (file == kNode) {
+      row.integer("", from.vertex_number(item));
+      for (int k = 0; k < from.dimension; ++k) row.real("  ", mesh.points[item][k]);
+    } else {
+      const auto cell = mesh.cells[item];
+      std::array<Index, 10> as_given{};
+      row.integer("", from.cell_number(item, i));
+      for (std::size_t k = 0; k < order.size(); ++k) as_given[order[k]] = cell[k];
+      for (std::size_t k = 0; k < order.size(); ++k) row.integer(" ", from.vertex_number(as_given[k]));
+    }
+    for (const Column& column : content.attributes) row.print("  {}", text_of(column, item));
+    if (content.marked) row.integer("  ", from.labels(file).values[item]);
     row.write("\n");
   });
-}
-
-void write_cells(OutputFile& out, File file, const WriteContext& from, const std::vector<Column>& columns,
-                 bool marked) {
-  const Mesh& mesh = from.mesh;
-  const auto& cells = from.layout.cells[file];
-  const auto order = places(file, from.layout.nodes[file], from.metadata.faces_name_opposite_edges);
-  write_rows(out, index_size(cells), [&](Text& row, Index i) {
-    const Index c = cells[i];
-    const auto cell = mesh.cells[c];
-    std::array<Index, 10> as_given{};
-    row.integer("", from.cell_number(c, i));
-    for (std::size_t k = 0; k < order.size(); ++k) as_given[order[k]] = cell[k];
-    for (std::size_t k = 0; k < order.size(); ++k) row.integer(" ", from.vertex_number(as_given[k]));
-    for (const Column& column : columns) row.print("  {}", text_of(column, c));
-    if (marked) row.integer("  ", from.cell_labels.values[c]);
-    row.write("\n");
-  });
-}
-
-void write_ele(OutputFile& out, const WriteContext& from, Notes& notes) {
-  const auto& cells = from.layout.cells[kEle];
-  const auto columns = attribute_columns(from.mesh, Association::cells, cells, notes);
-  note_lost_names(columns, ".ele", notes);
-  out.print("{}  {}  {}\n", cells.size(), from.layout.nodes[kEle], columns.size());
-  write_cells(out, kEle, from, columns, false);
-}
-
-void write_boundary(OutputFile& out, File file, const WriteContext& from, Notes& notes) {
-  const auto& cells = from.layout.cells[file];
-  const bool marked = has_markers(from.cell_labels, cells, kExtensions[file], notes);
-  out.print("{}  {}\n", cells.size(), marked ? 1 : 0);
-  write_cells(out, file, from, {}, marked);
 }
 
 /// Returns a line with a checksum of the mesh, its order and its data; different meshes hardly ever have the
 /// same line.
 std::string mark_of(const WriteContext& from) {
   Checksum sum;
-  Notes ignored;  // writing the files gives the same notes
-  const auto add_columns = [&](Association association, const std::vector<Index>& items) {
-    for (const Column& column : attribute_columns(from.mesh, association, items, ignored)) {
+  for (const File file : kFiles) {
+    const auto& [items, nodes, attributes, marked] = from.files[file];
+    for (const Column& column : attributes) {
       for (const Index item : items) sum.add_all(text_of(column, item));
     }
-  };
-  const auto add_markers = [&](const Labels& labels, const std::vector<Index>& items) {
-    if (!has_markers(labels, items, "", ignored)) return;
-    for (const Index item : items) sum.add(labels.values[item]);
-  };
-  const std::vector<Index> vertices = index_range(0, from.mesh.vertex_count());
-  add_columns(Association::vertices, vertices);
-  add_markers(from.vertex_labels, vertices);
-  add_columns(Association::cells, from.layout.cells[kEle]);
-  for (const File file : {kFace, kEdge}) add_markers(from.cell_labels, from.layout.cells[file]);
+    for (const Index item : items) {
+      if (marked) sum.add(from.labels(file).values[item]);
+    }
+  }
   sum.add_all(from.mesh.points);
   for (Index v = 0; v < from.mesh.vertex_count(); ++v) sum.add(from.vertex_number(v));
-  for (const std::vector<Index>& cells : from.layout.cells) {
+  for (const File file : kCellFiles) {
+    const std::vector<Index>& cells = from.files[file].items;
     for (std::size_t k = 0; k < cells.size(); ++k) {
       sum.add(from.cell_number(cells[k], static_cast<Index>(k)));
       for (const Index v : from.mesh.cells[cells[k]]) sum.add(v);
@@ -317,31 +301,33 @@ std::string mark_of(const WriteContext& from) {
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const TetGenMetadata standard;
   const auto* own = dynamic_cast<const TetGenMetadata*>(mesh.format_metadata.get());
+  const bool solid = has_shape(mesh, Shape::tetrahedron);
   WriteContext from{mesh,
                     own ? *own : standard,
-                    {},
+                    solid ? 3
+                    : own ? mesh.dimension
+                          : 2,
                     own != nullptr,
                     own != nullptr && can_be_numbers(mesh.vertex_ids, kLargestNumber, 0),
                     labels_of(mesh, Association::vertices),
                     labels_of(mesh, Association::cells)};
-  from.layout = layout_of(mesh, from.metadata, own != nullptr);
-  refuse_leftovers(from.layout, from.metadata, path);
+  distribute(from, solid);
+  refuse_leftovers(from, path);
+  std::vector<File> written;
+  for (const File file : kFiles) {
+    if (file != kNode && !from.metadata.parts[file].present && from.files[file].items.empty()) continue;
+    choose_columns(from, file, notes);
+    written.push_back(file);
+  }
 
   const std::string mark = mark_of(from);
   std::vector<OutputFile> files;
-  files.reserve(kExtensions.size());
-  for (const File file : {kNode, kEle, kFace, kEdge}) {
+  files.reserve(written.size());
+  for (const File file : written) {
     const TetGenMetadata::FileComments& part = from.metadata.parts[file];
-    if (file != kNode && !part.present && from.layout.cells[file].empty()) continue;
     OutputFile& out = files.emplace_back(path.companion(kExtensions[file]));
     out.write(part.comments_before);
-    if (file == kNode) {
-      write_points(out, from, notes);
-    } else if (file == kEle) {
-      write_ele(out, from, notes);
-    } else {
-      write_boundary(out, file, from, notes);
-    }
+    write_items(out, file, from);
     out.write(part.comments_after);
     if (!part.comments_after.empty() && !part.comments_after.ends_with('\n')) out.write("\n");
     out.write(mark);
