@@ -9,6 +9,7 @@
 #include "io/format.hpp"
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -49,82 +50,81 @@ inline constexpr std::size_t kLinearKinds = 7;
 /// The target of positions in a list or table: vertices, or the cells of one section.
 using Target = std::optional<Shape>;  // nullopt: vertices
 
-/// A section that lists positions. It is read as a set of the same name.
-struct ListKind {
+/// How a section refers to vertices or cells. Sections are read in the order of these forms.
+enum class Form : std::uint8_t {
+  list,   ///< lines of one position; read as a set of the same name
+  table,  ///< lines of a position and numbers; read as an array of the same name, with values at the
+          ///< positions
+  rows    ///< lines of several positions
+};
+
+/// A section that refers to vertices or cells by their positions. Each column of a line has a letter: v for a
+/// vertex; e, t, q or k for a cell in Edges, Triangles, Quadrilaterals or Tetrahedra; '.' for a number that
+/// is kept: it refers to normals, tangents or a geometry in another file.
+struct ReferenceKind {
   std::string_view keyword;
-  Target target;
-};
-
-inline constexpr std::array kListKinds{
-    ListKind{"Corners", {}},
-    ListKind{"RequiredVertices", {}},
-    ListKind{"Ridges", Shape::line},
-    ListKind{"RequiredEdges", Shape::line},
-    ListKind{"RequiredTriangles", Shape::triangle},
-    ListKind{"RequiredQuadrilaterals", Shape::quad},
-    ListKind{"RequiredTetrahedra", Shape::tetrahedron},
-    ListKind{"ParallelTriangles", Shape::triangle},  // the last two are ParMmg's
-    ListKind{"ParallelQuadrilaterals", Shape::quad},
-};
-
-/// A table: each line has a position and numbers. The numbers are kept: they refer to normals, tangents or a
-/// geometry in another file. A table is read as an array of the same name, with values at the positions that
-/// the table has.
-inline constexpr std::array kTableKinds{
-    ListKind{"NormalAtVertices", {}},
-    ListKind{"TangentAtVertices", {}},
-    ListKind{"VerticesOnGeometricVertices", {}},
-    ListKind{"VerticesOnGeometricEdges", {}},
-    ListKind{"VerticesOnGeometricTriangles", {}},
-    ListKind{"VerticesOnGeometricQuadrilaterals", {}},
-    ListKind{"EdgesOnGeometricEdges", Shape::line},
-    ListKind{"TrianglesOnGeometricTriangles", Shape::triangle},
-    ListKind{"TrianglesOnGeometricQuadrilaterals", Shape::triangle},
-    ListKind{"QuadrilateralsOnGeometricTriangles", Shape::quad},
-    ListKind{"QuadrilateralsOnGeometricQuadrilaterals", Shape::quad},
-    ListKind{"VertexOnGeometricVertex", {}},  // from here on BAMG's tables and those of libMesh 3
-    ListKind{"VertexOnGeometricEdge", {}},
-    ListKind{"VertexOnGeometricTriangle", {}},
-    ListKind{"VertexOnGeometricQuadrilateral", {}},
-    ListKind{"EdgeOnGeometricEdge", Shape::line},
-    ListKind{"TriangleOnGeometricTriangle", Shape::triangle},
-    ListKind{"TriangleOnGeometricQuadrilateral", Shape::triangle},
-    ListKind{"QuadrilateralOnGeometricTriangle", Shape::quad},
-    ListKind{"QuadrilateralOnGeometricQuadrilateral", Shape::quad},
-    ListKind{"VertexOnSupportVertex", {}},
-    ListKind{"VertexOnSupportEdge", {}},
-    ListKind{"VertexOnSupportTriangle", {}},
-    ListKind{"VertexOnSupportQuadrilateral", {}},
-    ListKind{"VertexOnSupportTetrahedron", {}},
-    ListKind{"VertexOnSupportPentahedron", {}},
-    ListKind{"VertexOnSupportHexahedron", {}},
-};
-
-/// A section whose lines have positions in some columns. Each column has a letter: v for a vertex; e, t, q or
-/// k for a cell in Edges, Triangles, Quadrilaterals or Tetrahedra; '.' for a number that is kept.
-struct RowKind {
-  std::string_view keyword;
+  Form form;
   std::string_view columns;
 };
 
-inline constexpr std::array kRowKinds{
-    RowKind{"SubDomainFromMesh", ".t.."},  // BAMG's: 3, a triangle of the domain, orientation, reference
-    RowKind{"SubDomain", ".t.."},          // in a file of geometry: 2, an edge, …, as in the next line
-    RowKind{"SubDomainFromGeom", ".e.."},
-    RowKind{"TangentAtEdges", "e..."},
-    RowKind{"CrackedEdges", "ee"},
-    RowKind{"CrackedTriangles", "tt"},
-    RowKind{"CrackedQuadrilaterals", "qq"},
-    RowKind{"EquivalentEdges", "ee"},
-    RowKind{"EquivalentTriangles", "tt"},
-    RowKind{"EquivalentQuadrilaterals", "qq"},
-    RowKind{"PeriodicVertices", "vv"},
-    RowKind{"PeriodicEdges", "ee"},
-    RowKind{"PeriodicTriangles", "tt"},
-    RowKind{"PeriodicQuadrilaterals", "qq"},
-    RowKind{"TangentAtEdgeVertices", "e.."},  // a cell, the place of a vertex in it, a tangent or normal
-    RowKind{"NormalAtTriangleVertices", "t.."},
-    RowKind{"NormalAtQuadrilateralVertices", "q.."},
+inline constexpr std::array kReferenceKinds{
+    ReferenceKind{"Corners", Form::list, "v"},
+    ReferenceKind{"RequiredVertices", Form::list, "v"},
+    ReferenceKind{"Ridges", Form::list, "e"},
+    ReferenceKind{"RequiredEdges", Form::list, "e"},
+    ReferenceKind{"RequiredTriangles", Form::list, "t"},
+    ReferenceKind{"RequiredQuadrilaterals", Form::list, "q"},
+    ReferenceKind{"RequiredTetrahedra", Form::list, "k"},
+    ReferenceKind{"ParallelTriangles", Form::list, "t"},  // the last two are ParMmg's
+    ReferenceKind{"ParallelQuadrilaterals", Form::list, "q"},
+    ReferenceKind{"NormalAtVertices", Form::table, "v"},
+    ReferenceKind{"TangentAtVertices", Form::table, "v"},
+    ReferenceKind{"VerticesOnGeometricVertices", Form::table, "v"},
+    ReferenceKind{"VerticesOnGeometricEdges", Form::table, "v"},
+    ReferenceKind{"VerticesOnGeometricTriangles", Form::table, "v"},
+    ReferenceKind{"VerticesOnGeometricQuadrilaterals", Form::table, "v"},
+    ReferenceKind{"EdgesOnGeometricEdges", Form::table, "e"},
+    ReferenceKind{"TrianglesOnGeometricTriangles", Form::table, "t"},
+    ReferenceKind{"TrianglesOnGeometricQuadrilaterals", Form::table, "t"},
+    ReferenceKind{"QuadrilateralsOnGeometricTriangles", Form::table, "q"},
+    ReferenceKind{"QuadrilateralsOnGeometricQuadrilaterals", Form::table, "q"},
+    ReferenceKind{"VertexOnGeometricVertex", Form::table,
+                  "v"},  // from here on BAMG's tables and those of libMesh 3
+    ReferenceKind{"VertexOnGeometricEdge", Form::table, "v"},
+    ReferenceKind{"VertexOnGeometricTriangle", Form::table, "v"},
+    ReferenceKind{"VertexOnGeometricQuadrilateral", Form::table, "v"},
+    ReferenceKind{"EdgeOnGeometricEdge", Form::table, "e"},
+    ReferenceKind{"TriangleOnGeometricTriangle", Form::table, "t"},
+    ReferenceKind{"TriangleOnGeometricQuadrilateral", Form::table, "t"},
+    ReferenceKind{"QuadrilateralOnGeometricTriangle", Form::table, "q"},
+    ReferenceKind{"QuadrilateralOnGeometricQuadrilateral", Form::table, "q"},
+    ReferenceKind{"VertexOnSupportVertex", Form::table, "v"},
+    ReferenceKind{"VertexOnSupportEdge", Form::table, "v"},
+    ReferenceKind{"VertexOnSupportTriangle", Form::table, "v"},
+    ReferenceKind{"VertexOnSupportQuadrilateral", Form::table, "v"},
+    ReferenceKind{"VertexOnSupportTetrahedron", Form::table, "v"},
+    ReferenceKind{"VertexOnSupportPentahedron", Form::table, "v"},
+    ReferenceKind{"VertexOnSupportHexahedron", Form::table, "v"},
+    ReferenceKind{"SubDomainFromMesh", Form::rows,
+                  ".t.."},  // BAMG's: 3, a triangle of the domain, orientation, reference
+    ReferenceKind{"SubDomain", Form::rows,
+                  ".t.."},  // in a file of geometry: 2, an edge, …, as in the next line
+    ReferenceKind{"SubDomainFromGeom", Form::rows, ".e.."},
+    ReferenceKind{"TangentAtEdges", Form::rows, "e..."},
+    ReferenceKind{"CrackedEdges", Form::rows, "ee"},
+    ReferenceKind{"CrackedTriangles", Form::rows, "tt"},
+    ReferenceKind{"CrackedQuadrilaterals", Form::rows, "qq"},
+    ReferenceKind{"EquivalentEdges", Form::rows, "ee"},
+    ReferenceKind{"EquivalentTriangles", Form::rows, "tt"},
+    ReferenceKind{"EquivalentQuadrilaterals", Form::rows, "qq"},
+    ReferenceKind{"PeriodicVertices", Form::rows, "vv"},
+    ReferenceKind{"PeriodicEdges", Form::rows, "ee"},
+    ReferenceKind{"PeriodicTriangles", Form::rows, "tt"},
+    ReferenceKind{"PeriodicQuadrilaterals", Form::rows, "qq"},
+    ReferenceKind{"TangentAtEdgeVertices", Form::rows,
+                  "e.."},  // a cell, the place of a vertex in it, a tangent or normal
+    ReferenceKind{"NormalAtTriangleVertices", Form::rows, "t.."},
+    ReferenceKind{"NormalAtQuadrilateralVertices", Form::rows, "q.."},
 };
 
 /// A section of BAMG's mesh sizes at all vertices, without a count. It is read as an array of the same name.
@@ -143,7 +143,7 @@ struct MeditMetadata final : FormatMetadata {
     std::string text;  ///< verbatim, from the keyword on
     bool before_vertices;
   };
-  /// A section of a RowKind, or a table in which two rows are of the same item.
+  /// A section of rows, or a table in which two rows are of the same item.
   struct Rows {
     std::string keyword;
     std::string columns;
@@ -164,7 +164,7 @@ struct MeditMetadata final : FormatMetadata {
                                                             std::span<const Index> cells) const override;
 };
 
-/// Returns the target of a column of a RowKind whose letter is v, e, t, q or k.
+/// Returns the target of a column whose letter is v, e, t, q or k.
 Target target_of(char column);
 
 /// Returns the kind of a cell type, or the number of kinds if there is none.

@@ -65,8 +65,9 @@ std::size_t find_kind(const Kinds& kinds, std::string_view keyword) {
 }
 
 /// A section to be read after the sections that it refers to; its keyword ends at `byte`.
+template <class Kind>
 struct Pending {
-  std::size_t kind;
+  const Kind* kind;
   std::int64_t byte;
 };
 
@@ -161,18 +162,15 @@ class Reader {
   }
 
   void read_other_section(const std::string& keyword) {
-    if (std::size_t kind = find_cell_kind(keyword); kind < kCellKinds.size()) {
-      if (!has_vertices_) return skip_rows(pending_cells_, kind, kCellKinds[kind].nodes + 1);
-      return read_cells(kind);
+    if (const std::size_t kind = find_cell_kind(keyword); kind < kCellKinds.size()) {
+      if (has_vertices_) return read_cells(kind);
+      pending_cells_.push_back({&kCellKinds[kind], in_.byte()});
+      return skip_rows(kCellKinds[kind].nodes + 1);
     }
-    if (const std::size_t kind = find_kind(kListKinds, keyword); kind < kListKinds.size()) {
-      return skip_rows(pending_lists_, kind, 1);
-    }
-    if (const std::size_t kind = find_kind(kTableKinds, keyword); kind < kTableKinds.size()) {
-      return skip_rows(pending_tables_, kind, 0);
-    }
-    if (const std::size_t kind = find_kind(kRowKinds, keyword); kind < kRowKinds.size()) {
-      return skip_rows(pending_rows_, kind, static_cast<int>(kRowKinds[kind].columns.size()));
+    if (const std::size_t kind = find_kind(kReferenceKinds, keyword); kind < kReferenceKinds.size()) {
+      const auto& [name, form, columns] = kReferenceKinds[kind];
+      pending_.push_back({&kReferenceKinds[kind], in_.byte()});
+      return skip_rows(form == Form::table ? 0 : static_cast<int>(columns.size()));
     }
     if (const std::size_t kind = find_kind(kSizeKinds, keyword); kind < kSizeKinds.size()) {
       return read_sizes(kSizeKinds[kind]);
@@ -249,28 +247,13 @@ class Reader {
     const Index count = in_.count("the count of Vertices", 2 * (mesh_.dimension + 1));
     mesh_.points.resize(count, {0, 0, 0});
     std::vector<std::int64_t> references(count);
-    const Index regular = read_regular_records(in_, count, [&](Scanner& in, Index v) {
-      for (int k = 0; k < mesh_.dimension; ++k) {
-        if (!in.take_finite(mesh_.points[v][k])) return false;
-      }
-      return in.take_number(references[v]);
+    read_records(in_, count, [&](Scanner& in, Index v) {
+      for (int k = 0; k < mesh_.dimension; ++k) mesh_.points[v][k] = in.finite("a coordinate");
+      references[v] = in.integer<std::int64_t>("the reference of a vertex");
     });
-    for (Index v = regular; v < count; ++v) {
-      for (int k = 0; k < mesh_.dimension; ++k) mesh_.points[v][k] = in_.finite("a coordinate");
-      references[v] = in_.integer<std::int64_t>("the reference of a vertex");
-    }
     has_vertices_ = true;
     mesh_.data.push_back(
         {std::string(kLabel), Association::vertices, 1, label_values(std::move(references)), {}, {}});
-  }
-
-  /// Reads a position from 1 to `count`; returns it counted from 0.
-  Index position(Index count, std::string_view what) {
-    const auto number = in_.integer<std::int64_t>(what);
-    if (number < 1 || number > count) {
-      in_.fail(fmt::format("{} is {}", what, number), fmt::format("1 to {} are possible", count));
-    }
-    return static_cast<Index>(number - 1);
   }
 
   void read_cells(std::size_t kind) {
@@ -287,26 +270,17 @@ class Reader {
     append_cells(mesh_.cells, shape, nodes, count);
     references_.resize(references_.size() + count);
     const std::span references = std::span(references_).last(count);
-    const Index regular = read_regular_records(in_, count, [&](Scanner& in, Index c) {
-      for (Index& v : mesh_.cells[first + c]) {
-        std::int64_t number = 0;
-        if (!in.take_number(number) || number < 1 || number > mesh_.vertex_count()) return false;
-        v = static_cast<Index>(number - 1);
-      }
-      return in.take_number(references[c]);
+    read_records(in_, count, [&](Scanner& in, Index c) {
+      for (Index& v : mesh_.cells[first + c]) v = in.position("a vertex of the cell", mesh_.vertex_count());
+      references[c] = in.integer<std::int64_t>("the reference of a cell");
     });
-    for (Index c = regular; c < count; ++c) {
-      for (Index& v : mesh_.cells[first + c]) v = position(mesh_.vertex_count(), "a vertex of the cell");
-      references[c] = in_.integer<std::int64_t>("the reference of a cell");
-    }
   }
 
   // ---- sections that refer to vertices or cells
 
   /// Skips a section that is read later. Each row has `words` words; if `words` is 0, each row has as many
   /// words as the first line.
-  void skip_rows(std::vector<Pending>& pending, std::size_t kind, int words) {
-    pending.push_back({kind, in_.byte()});
+  void skip_rows(int words) {
     const Index count = in_.count(what_count(), 2 * std::max(words, 1));
     if (words == 0) words = words_of_line();
     const std::string what = what_number();
@@ -316,33 +290,20 @@ class Reader {
   }
 
   /// Counts the words in the line of the next word.
-  int words_of_line() {
-    if (in_.at_end()) return 1;
-    std::string_view line = in_.peek_line();
-    line = line.substr(0, line.find(kComment));
-    int words = 0;
-    for (; !next_word(line, " \t\f\v").empty(); ++words) {
-    }
-    return words;
-  }
+  int words_of_line() { return in_.at_end() ? 1 : in_.words_in_line(); }
 
   void read_pending() {
     if (!has_vertices_) in_.fail("the file has no Vertices", "a mesh needs some");
     for (const auto& [kind, byte] : pending_cells_) {
-      go_to(byte, kCellKinds[kind].keyword);
-      read_cells(kind);
+      go_to(byte, kind->keyword);
+      read_cells(static_cast<std::size_t>(kind - kCellKinds.data()));
     }
-    for (const auto& [kind, byte] : pending_lists_) {
-      go_to(byte, kListKinds[kind].keyword);
-      read_list(kListKinds[kind]);
-    }
-    for (const auto& [kind, byte] : pending_tables_) {
-      go_to(byte, kTableKinds[kind].keyword);
-      read_table(kTableKinds[kind]);
-    }
-    for (const auto& [kind, byte] : pending_rows_) {
-      go_to(byte, kRowKinds[kind].keyword);
-      read_rows(columns_of(kRowKinds[kind]));
+    std::ranges::stable_sort(pending_, {}, [](const auto& section) { return section.kind->form; });
+    for (const auto& [kind, byte] : pending_) {
+      go_to(byte, kind->keyword);
+      if (kind->form == Form::list) read_list(*kind);
+      if (kind->form == Form::table) read_table(*kind);
+      if (kind->form == Form::rows) read_rows(columns_of(*kind));
     }
   }
 
@@ -364,12 +325,13 @@ class Reader {
     return {0, 0};
   }
 
-  void read_list(const ListKind& kind) {
-    EntitySet set{std::string(kind.keyword), kind.target ? Association::cells : Association::vertices, {}};
+  void read_list(const ReferenceKind& kind) {
+    const Target target = target_of(kind.columns.front());
+    EntitySet set{std::string(kind.keyword), target ? Association::cells : Association::vertices, {}};
     const Index members = in_.count(what_count(), 2);
-    const auto [first, count] = range_of(kind.target, members);
+    const auto [first, count] = range_of(target, members);
     const std::string what = what_number();
-    for (Index i = 0; i < members; ++i) set.members.push_back(first + position(count, what));
+    for (Index i = 0; i < members; ++i) set.members.push_back(first + in_.position(what, count));
     mesh_.sets.push_back(std::move(set));
   }
 
@@ -390,7 +352,7 @@ class Reader {
           continue;
         }
         const auto [first, count] = range_of(target_of(column), rows);
-        section.items.push_back(first + position(count, what));
+        section.items.push_back(first + in_.position(what, count));
       }
     }
     metadata_->rows.push_back(std::move(section));
@@ -399,7 +361,7 @@ class Reader {
   /// Returns the columns of a section of that kind in this file. A file without triangles and quadrilaterals
   /// is a geometry: its domains name edges of the same file. In a mesh, domains of the geometry name edges of
   /// another file; these numbers are kept.
-  [[nodiscard]] std::string_view columns_of(const RowKind& kind) const {
+  [[nodiscard]] std::string_view columns_of(const ReferenceKind& kind) const {
     const auto cells = [&](Shape shape) { return counted_kind(shape, counts_) < kCellKinds.size(); };
     const bool is_geometry = !cells(Shape::triangle) && !cells(Shape::quad);
     if (kind.columns == ".t.." && is_geometry) return ".e..";
@@ -417,10 +379,11 @@ class Reader {
         {std::string(kind.keyword), Association::vertices, kind.components, std::move(sizes), {}, {}});
   }
 
-  void read_table(const ListKind& kind) {
+  void read_table(const ReferenceKind& kind) {
+    const Target target = target_of(kind.columns.front());
     const std::int64_t begin = in_.byte();
     DataArray array{
-        std::string(kind.keyword), kind.target ? Association::cells : Association::vertices, 1, {}, {}, {}};
+        std::string(kind.keyword), target ? Association::cells : Association::vertices, 1, {}, {}, {}};
     const Index rows = in_.count(what_count(), 2);
     if (rows == 0) {
       metadata_->sections.push_back({array.name, array.name + "\n0", false});
@@ -430,15 +393,16 @@ class Reader {
     if (array.components < 1)
       in_.fail("a line of " + array.name + " has one number", "two or more are needed");
 
-    const auto [first, count] = range_of(kind.target, rows);
+    const auto [first, count] = range_of(target, rows);
     const std::string what = what_number();
     std::vector<double> values;
     std::vector<bool> seen(count, false);
     for (Index row = 0; row < rows; ++row) {
-      const Index item = position(count, what);
+      const Index item = in_.position(what, count);
       if (seen[item]) {  // an array has only one row for each item
         in_.seek(begin);
-        return read_rows(kind_columns(kind, array.components));
+        return read_rows(std::string(kind.columns) +
+                         std::string(static_cast<std::size_t>(array.components), '.'));
       }
       seen[item] = true;
       array.indices.push_back(first + item);
@@ -446,15 +410,6 @@ class Reader {
     }
     array.values = std::move(values);
     mesh_.data.push_back(std::move(array));
-  }
-
-  /// Returns the columns of a table in the notation of RowKind.
-  static std::string kind_columns(const ListKind& kind, Index others) {
-    const char first = !kind.target                     ? 'v'
-                       : kind.target == Shape::line     ? 'e'
-                       : kind.target == Shape::triangle ? 't'
-                                                        : 'q';
-    return first + std::string(static_cast<std::size_t>(others), '.');
   }
 
   // ---- the end
@@ -526,10 +481,8 @@ class Reader {
   bool has_dimension_ = false;
   bool has_vertices_ = false;
   bool has_end_ = false;
-  std::vector<Pending> pending_cells_;
-  std::vector<Pending> pending_lists_;
-  std::vector<Pending> pending_tables_;
-  std::vector<Pending> pending_rows_;
+  std::vector<Pending<CellKind>> pending_cells_;
+  std::vector<Pending<ReferenceKind>> pending_;
   std::array<Index, kCellKinds.size()> first_{};
   std::array<Index, kCellKinds.size()> counts_{};
   std::vector<std::int64_t> references_;

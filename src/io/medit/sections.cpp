@@ -8,51 +8,30 @@ namespace meshorder::medit {
 namespace {
 
 /// A reference cell: the coordinates of its corners, and the pairs of corners that have a node halfway
-/// between them.
+/// between them, two digits for each pair.
 struct Reference {
   std::vector<std::vector<int>> corners;
-  std::vector<std::array<int, 2>> middles;
+  std::string_view middles;
 };
 
 Reference reference(Shape shape) {
   switch (shape) {
     case Shape::line:
-      return {{{0}, {2}}, {{0, 1}}};
+      return {{{0}, {2}}, "01"};
     case Shape::triangle:
-      return {{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}, {{0, 1}, {1, 2}, {2, 0}}};
+      return {{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}, "01 12 20"};
     case Shape::quad:
-      return {{{0, 0}, {2, 0}, {2, 2}, {0, 2}}, {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 2}}};
+      return {{{0, 0}, {2, 0}, {2, 2}, {0, 2}}, "01 12 23 30 02"};
     case Shape::tetrahedron:
-      return {{{2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 2, 0}, {0, 0, 0, 2}},
-              {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+      return {{{2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 2, 0}, {0, 0, 0, 2}}, "01 12 20 03 13 23"};
     case Shape::pyramid:
-      return {{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}},
-              {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}, {0, 2}}};
+      return {{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}}, "01 12 23 30 04 14 24 34 02"};
     case Shape::wedge:
-      return {
-          {{2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 2, 0}, {2, 0, 0, 2}, {0, 2, 0, 2}, {0, 0, 2, 2}},
-          {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}, {0, 4}, {1, 5}, {2, 3}}};
+      return {{{2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 2, 0}, {2, 0, 0, 2}, {0, 2, 0, 2}, {0, 0, 2, 2}},
+              "01 12 20 34 45 53 03 14 25 04 15 23"};
     case Shape::hexahedron:
       return {{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2}},
-              {{0, 1},
-               {1, 2},
-               {2, 3},
-               {3, 0},
-               {4, 5},
-               {5, 6},
-               {6, 7},
-               {7, 4},
-               {0, 4},
-               {1, 5},
-               {2, 6},
-               {3, 7},
-               {0, 7},
-               {1, 6},
-               {0, 5},
-               {2, 7},
-               {0, 2},
-               {4, 6},
-               {0, 6}}};
+              "01 12 23 30 45 56 67 74 04 15 26 37 07 16 05 27 02 46 06"};
     default:
       return {};
   }
@@ -123,9 +102,11 @@ std::size_t kind_of_ordering(std::string_view keyword) {
 std::vector<std::vector<int>> reference_nodes(Shape shape) {
   const Reference cell = reference(shape);
   std::vector<std::vector<int>> result = cell.corners;
-  for (const auto& [a, b] : cell.middles) {
-    std::vector<int> node = cell.corners[a];
-    for (std::size_t k = 0; k < node.size(); ++k) node[k] = (node[k] + cell.corners[b][k]) / 2;
+  std::string_view middles = cell.middles;
+  for (auto pair = next_word(middles); !pair.empty(); pair = next_word(middles)) {
+    std::vector<int> node = cell.corners[pair[0] - '0'];
+    const std::vector<int>& other = cell.corners[pair[1] - '0'];
+    for (std::size_t k = 0; k < node.size(); ++k) node[k] = (node[k] + other[k]) / 2;
     result.push_back(std::move(node));
   }
   return result;

@@ -120,25 +120,26 @@ Index position_in(const WriteContext& from, const Target& target, Index item) {
   return kind_of(cells.shapes[item], cells.vertex_count(item)) == kind ? from.layout.place[item] : -1;
 }
 
-/// Returns the kind of section with that name that all `items` fit, or nullptr.
-template <std::size_t N>
-const ListKind* fitting_kind(const std::array<ListKind, N>& kinds, const WriteContext& from,
-                             std::string_view name, Association association,
-                             const std::vector<Index>& items) {
-  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const ListKind& kind) {
-    return kind.keyword == name && (kind.target ? Association::cells : Association::vertices) == association;
+/// Returns the kind of section of that form and name that all `items` fit, or nullptr.
+const ReferenceKind* fitting_kind(Form form, const WriteContext& from, std::string_view name,
+                                  Association association, const std::vector<Index>& items) {
+  const auto found = std::ranges::find_if(kReferenceKinds, [&](const ReferenceKind& kind) {
+    const Association of = target_of(kind.columns.front()) ? Association::cells : Association::vertices;
+    return kind.form == form && kind.keyword == name && of == association;
   });
-  if (found == kinds.end()) return nullptr;
-  const bool fit = std::all_of(items.begin(), items.end(),
-                               [&](Index item) { return position_in(from, found->target, item) >= 0; });
+  if (found == kReferenceKinds.end()) return nullptr;
+  const Target target = target_of(found->columns.front());
+  const bool fit =
+      std::ranges::all_of(items, [&](Index item) { return position_in(from, target, item) >= 0; });
   return fit ? &*found : nullptr;
 }
 
 void write_set(OutputFile& out, const WriteContext& from, const EntitySet& set, Notes& notes) {
-  const ListKind* kind = fitting_kind(kListKinds, from, set.name, set.association, set.members);
+  const ReferenceKind* kind = fitting_kind(Form::list, from, set.name, set.association, set.members);
   if (!kind) return note_set_unsupported(set, "Medit", notes);
   out.print("\n{}\n{}\n", set.name, set.members.size());
-  for (const Index member : set.members) out.print("{}\n", position_in(from, kind->target, member) + 1);
+  const Target target = target_of(kind->columns.front());
+  for (const Index member : set.members) out.print("{}\n", position_in(from, target, member) + 1);
 }
 
 void print_value(OutputFile& out, const Values& values, Offset at) {
@@ -198,16 +199,16 @@ bool write_sizes(OutputFile& out, const DataArray& array) {
 
 /// Writes an array as the table of the same name, if the mesh came from this format.
 void write_array(OutputFile& out, const WriteContext& from, const DataArray& array, Notes& notes) {
-  const ListKind* kind = nullptr;
+  const ReferenceKind* kind = nullptr;
   const bool numbers = !are_texts(array.values);
   if (from.own && numbers && write_sizes(out, array)) return;
   if (from.own && numbers && !array.is_dense()) {
-    kind = fitting_kind(kTableKinds, from, array.name, array.association, array.indices);
+    kind = fitting_kind(Form::table, from, array.name, array.association, array.indices);
   }
   if (!kind) return note_array_unsupported(array, "Medit", notes);
   out.print("\n{}\n{}\n", array.name, array.indices.size());
   for (Index row = 0; row < index_size(array.indices); ++row) {
-    out.print("{}", position_in(from, kind->target, array.indices[row]) + 1);
+    out.print("{}", position_in(from, target_of(kind->columns.front()), array.indices[row]) + 1);
     for (Index k = 0; k < array.components; ++k) {
       print_value(out, array.values, Offset{row} * array.components + k);
     }
