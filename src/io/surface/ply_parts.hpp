@@ -4,6 +4,7 @@
 #include "io/format.hpp"
 #include <meshorder/mesh.hpp>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -15,9 +16,44 @@ namespace meshorder::ply {
 
 enum class Encoding : std::uint8_t { ascii, little_endian, big_endian };
 
-enum class Type : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+/// Types of numbers, in the order of Values.
+enum class Type : std::uint8_t { float64, float32, int8, uint8, int16, uint16, int32, uint32 };
 
-inline bool is_integer(Type type) { return type < Type::float32; }
+/// The words for each type in a header, the usual one first.
+inline constexpr std::array<std::array<std::string_view, 2>, 8> kTypeWords{{{"double", "float64"},
+                                                                            {"float", "float32"},
+                                                                            {"char", "int8"},
+                                                                            {"uchar", "uint8"},
+                                                                            {"short", "int16"},
+                                                                            {"ushort", "uint16"},
+                                                                            {"int", "int32"},
+                                                                            {"uint", "uint32"}}};
+
+inline bool is_integer(Type type) { return type > Type::float32; }
+
+/// Returns `work` of a zero of the type.
+template <class Work>
+auto with_type(Type type, const Work& work) {
+  switch (type) {
+    case Type::float64:
+      break;
+    case Type::float32:
+      return work(0.0F);
+    case Type::int8:
+      return work(std::int8_t{});
+    case Type::uint8:
+      return work(std::uint8_t{});
+    case Type::int16:
+      return work(std::int16_t{});
+    case Type::uint16:
+      return work(std::uint16_t{});
+    case Type::int32:
+      return work(std::int32_t{});
+    case Type::uint32:
+      return work(std::uint32_t{});
+  }
+  return work(0.0);
+}
 
 /// A number type as a header spells it: "uchar" or "uint8".
 struct TypeWord {

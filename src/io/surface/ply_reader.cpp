@@ -4,6 +4,7 @@
 #include "io/stream/regular_text.hpp"
 #include "io/surface/ply_parts.hpp"
 #include "io/surface/surface_data.hpp"
+#include "mesh/cells.hpp"
 #include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 
@@ -27,22 +28,9 @@ constexpr std::string_view kRemedy = "see 'element vertex N', 'property float x'
 
 // ---- header
 
-struct NamedType {
-  std::string_view word;
-  Type type;
-};
-constexpr std::array kTypes{NamedType{"char", Type::int8},      NamedType{"int8", Type::int8},
-                            NamedType{"uchar", Type::uint8},    NamedType{"uint8", Type::uint8},
-                            NamedType{"short", Type::int16},    NamedType{"int16", Type::int16},
-                            NamedType{"ushort", Type::uint16},  NamedType{"uint16", Type::uint16},
-                            NamedType{"int", Type::int32},      NamedType{"int32", Type::int32},
-                            NamedType{"uint", Type::uint32},    NamedType{"uint32", Type::uint32},
-                            NamedType{"float", Type::float32},  NamedType{"float32", Type::float32},
-                            NamedType{"double", Type::float64}, NamedType{"float64", Type::float64}};
-
 TypeWord parse_type(const Scanner& scanner, std::string_view word) {
-  for (const NamedType& type : kTypes) {
-    if (type.word == word) return {std::string(word), type.type};
+  for (std::size_t type = 0; type < kTypeWords.size(); ++type) {
+    if (std::ranges::count(kTypeWords[type], word) > 0) return {std::string(word), static_cast<Type>(type)};
   }
   scanner.fail("the type '" + std::string(word.substr(0, 40)) + "' is unknown",
                "char … double, int8 … float64");
@@ -280,44 +268,27 @@ void read_header(Scanner& scanner, PlyMetadata& header) {
 
 // ---- body
 
-/// Reads the numbers of the body.
+/// Reads the numbers of the body; a scanner may be at another place of the text.
 struct BodyReader : NumberReader {
   using NumberReader::NumberReader;
 
   template <class T>
-  T number(std::string_view what) {
-    return binary ? scanner.binary<T>(what, order) : text_number<T>(what);
+  T number(Scanner& in, std::string_view what) const {
+    return binary ? in.binary<T>(what, order) : text_number<T>(in, what);
   }
 
   /// Reads a number of that type and converts it to T.
   template <class T>
-  T number_as(Type type, std::string_view what) {
-    switch (type) {
-      case Type::int8:
-        return static_cast<T>(number<std::int8_t>(what));
-      case Type::uint8:
-        return static_cast<T>(number<std::uint8_t>(what));
-      case Type::int16:
-        return static_cast<T>(number<std::int16_t>(what));
-      case Type::uint16:
-        return static_cast<T>(number<std::uint16_t>(what));
-      case Type::int32:
-        return static_cast<T>(number<std::int32_t>(what));
-      case Type::uint32:
-        return static_cast<T>(number<std::uint32_t>(what));
-      case Type::float32:
-        // text may have more digits than the type
-        return static_cast<T>(binary ? number<float>(what) : number<double>(what));
-      case Type::float64:
-        break;
-    }
-    return static_cast<T>(number<double>(what));
+  T number_as(Scanner& in, Type type, std::string_view what) const {
+    // text may have more digits than a float
+    if (!binary && type == Type::float32) type = Type::float64;
+    return with_type(type, [&](auto zero) { return static_cast<T>(number<decltype(zero)>(in, what)); });
   }
 
   /// Reads the length of a list, at most the number of bytes that are left.
-  Index list_length(const Property& property) {
-    const auto length = number_as<std::int64_t>(property.count_type.type, "the length of a list");
-    if (length < 0 || length > scanner.bytes_left() || length > kMaxIndex) {
+  Index list_length(Scanner& in, const Property& property) const {
+    const auto length = number_as<std::int64_t>(in, property.count_type.type, "the length of a list");
+    if (length < 0 || length > in.bytes_left() || length > kMaxIndex) {
       fail("the list " + property.name + " has the length " + std::to_string(length),
            "the file is damaged or cut short");
     }
@@ -326,51 +297,26 @@ struct BodyReader : NumberReader {
 
  private:
   template <class T>
-  T text_number(std::string_view what) {
-    const std::string_view word = scanner.word(what);
+  static T text_number(Scanner& in, std::string_view what) {
     if constexpr (std::is_integral_v<T>) {
-      const auto value = parse_integer<std::int64_t>(scanner, word, what);
+      const auto value = in.integer<std::int64_t>(what);
       if (!std::in_range<T>(value)) {
-        scanner.fail(std::string(what) + " is " + std::to_string(value),
-                     "it does not fit the property's type");
+        in.fail(std::string(what) + " is " + std::to_string(value), "it does not fit the property's type");
       }
       return static_cast<T>(value);
+    } else if constexpr (std::is_same_v<T, double>) {
+      return in.real(what);
     } else {
+      const std::string_view word = in.word(what);
       T value{};
       const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
       if (code == std::errc{} && end == word.data() + word.size()) return value;
-      return static_cast<T>(parse_real(scanner, word, what));
+      return static_cast<T>(parse_real(in, word, what));
     }
   }
 };
 
-Values values_of(Type type) {
-  switch (type) {
-    case Type::int8:
-      return std::vector<std::int8_t>();
-    case Type::uint8:
-      return std::vector<std::uint8_t>();
-    case Type::int16:
-      return std::vector<std::int16_t>();
-    case Type::uint16:
-      return std::vector<std::uint16_t>();
-    case Type::int32:
-      return std::vector<std::int32_t>();
-    case Type::uint32:
-      return std::vector<std::uint32_t>();
-    case Type::float32:
-      return std::vector<float>();
-    case Type::float64:
-      break;
-  }
-  return std::vector<double>();
-}
-
-void append(Values& values, BodyReader& body, Index count, const Property& property) {
-  with_numbers(values, [&]<class T>(std::vector<T>& list) {
-    for (Index i = 0; i < count; ++i) list.push_back(body.number<T>(property.name));
-  });
-}
+Values values_of(Type type) { return values_of_type(static_cast<std::size_t>(type)); }
 
 /// The values of one property; values of a list separately for each length.
 struct Column {
@@ -381,58 +327,23 @@ struct Column {
   std::map<Index, OfLength> by_length;
 
   void read(BodyReader& body, const Property& property, Index row) {
-    const Index length = property.is_list ? body.list_length(property) : 1;
+    const Index length = property.is_list ? body.list_length(body.scanner, property) : 1;
     auto found = by_length.find(length);
     if (found == by_length.end())
       found = by_length.insert({length, {{}, values_of(property.type.type)}}).first;
-    append(found->second.values, body, length, property);
+    with_numbers(found->second.values, [&]<class T>(std::vector<T>& list) {
+      for (Index i = 0; i < length; ++i) list.push_back(body.number<T>(body.scanner, property.name));
+    });
     if (property.is_list) found->second.rows.push_back(row);
   }
 };
 
-/// Takes the next number of a text if it is a plain one that the type can hold.
-template <class T>
-bool take_plain(Scanner& in, T& value) {
-  if constexpr (std::is_same_v<T, double>) {
-    return in.take_number(value);
-  } else if constexpr (std::is_integral_v<T>) {
-    std::int64_t number = 0;
-    if (!in.take_number(number) || !std::in_range<T>(number)) return false;
-    value = static_cast<T>(number);
-    return true;
-  } else {
-    const std::string_view word = in.peek_word();
-    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-    in.move_on(word.size());
-    return code == std::errc{} && end == word.data() + word.size();
-  }
-}
-
-/// Takes a number as `BodyReader::number_as` does, if it is a plain one.
-template <class T>
-bool take_plain_as(Scanner& in, Type type, T& value) {
-  if (!is_integer(type)) {
-    double number = 0;
-    if (!in.take_number(number)) return false;
-    value = static_cast<T>(number);
-    return true;
-  }
-  std::int64_t number = 0;
-  if (!in.take_number(number)) return false;
-  value = static_cast<T>(number);
-  constexpr std::array<std::array<std::int64_t, 2>, 6> kRanges{
-      {{-128, 127}, {0, 255}, {-32768, 32767}, {0, 65535}, {-2147483648, 2147483647}, {0, 4294967295}}};
-  const auto [least, most] = kRanges[static_cast<std::size_t>(type)];
-  return least <= number && number <= most;
-}
-
 /// Returns the minimum number of bytes (in text: digits and blanks) of an item of the element.
 std::int64_t min_bytes(const Element& element, const BodyReader& body) {
-  constexpr std::array<int, 8> kBytes{1, 1, 2, 2, 4, 4, 4, 8};
   std::int64_t bytes = 0;
   for (const Property& property : element.properties) {
     const TypeWord& first = property.is_list ? property.count_type : property.type;
-    bytes += !body.binary ? 2 : kBytes[static_cast<std::size_t>(first.type)];
+    bytes += !body.binary ? 2 : size_of_type(static_cast<std::size_t>(first.type));
   }
   return bytes;
 }
@@ -510,24 +421,32 @@ class Reader {
       *values[k] = values_of(element.properties[k].type.type);
       with_numbers(*values[k], [&](auto& list) { list.resize(count); });
     }
-    std::vector<FewVertices> cells(holds_cells(element) ? count : 0);
+    Cells& cells = mesh_.cells;
+    const Index first = cells.size();
+    const bool has_cells = holds_cells(element);
+    if (has_cells) append_cells(cells, Shape::quad, 4, element.count);
     const Index read = read_regular_records(body_.scanner, element.count, [&](Scanner& in, Index row) {
       for (std::size_t k = 0; k < columns.size(); ++k) {
         const Property& property = element.properties[k];
-        const bool is_plain =
-            values[k] != nullptr
-                ? with_numbers(*values[k], [&](auto& list) { return take_plain(in, list[row]); })
-            : element.role == Role::vertices ? take_coordinate(in, property, mesh_.points[row])
-                                             : take_vertices(in, element, property, cells[row]);
-        if (!is_plain) return false;
+        if (values[k] != nullptr) {
+          with_numbers(*values[k], [&]<class T>(std::vector<T>& list) {
+            list[row] = body_.number<T>(in, property.name);
+          });
+        } else if (!has_cells) {
+          read_coordinate(in, property, mesh_.points[row]);
+        } else if (element.role == Role::edges) {
+          cells.shapes[first + row] = Shape::line;
+          cells[first + row][static_cast<std::size_t>(end_of(property))] = vertex(in, property);
+        } else if (!read_small_cell(in, element, property, first + row)) {
+          return false;
+        }
       }
       return true;
     });
     for (Values* const list : values) {
       if (list != nullptr) with_numbers(*list, [&](auto& numbers) { numbers.resize(read); });
     }
-    append_small_cells(std::span(cells).first(cells.empty() ? 0 : static_cast<std::size_t>(read)),
-                       element.role == Role::tetrahedra ? Shape::tetrahedron : Shape::quad, mesh_.cells);
+    if (has_cells) trim_to_corners(cells, first, read);
     return read;
   }
 
@@ -538,30 +457,21 @@ class Reader {
     return is_corner_list(property);
   }
 
-  static bool take_coordinate(Scanner& in, const Property& property, Point& point) {
-    double& x = point[coordinate_of(property)];
-    return take_plain_as(in, property.type.type, x) && std::isfinite(x);
+  void read_coordinate(Scanner& in, const Property& property, Point& point) const {
+    double& x = point[static_cast<std::size_t>(coordinate_of(property))];
+    x = body_.number_as<double>(in, property.type.type, "a coordinate");
+    if (!std::isfinite(x)) body_.fail("a coordinate is not finite", "a finite number is needed");
   }
 
-  /// Takes an end of an edge, or the list of the vertices of a cell.
-  bool take_vertices(Scanner& in, const Element& element, const Property& property, FewVertices& cell) const {
-    const auto take_vertex = [&](Index& vertex) {
-      std::int64_t number = 0;
-      if (!take_plain_as(in, property.type.type, number) || number < 0 || number >= vertex_count_)
-        return false;
-      vertex = static_cast<Index>(number);
-      return true;
-    };
-    if (element.role == Role::edges) {
-      std::fill(cell.begin() + 2, cell.end(), -1);
-      return take_vertex(cell[end_of(property)]);
-    }
-    std::int64_t length = 0;
-    const std::int64_t least = element.role == Role::tetrahedra ? 4 : 1;
-    if (!take_plain_as(in, property.count_type.type, length) || length < least || length > std::ssize(cell))
-      return false;
-    cell.fill(-1);
-    return std::all_of(cell.begin(), cell.begin() + length, take_vertex);
+  /// Reads the vertices of a cell into a cell that has room for four; returns false if they do not fit.
+  bool read_small_cell(Scanner& in, const Element& element, const Property& property, Index cell) {
+    const Index length = body_.list_length(in, property);
+    const bool is_tetrahedron = element.role == Role::tetrahedra;
+    if (length < (is_tetrahedron ? 4 : 1) || length > 4) return false;
+    mesh_.cells.shapes[cell] = is_tetrahedron ? Shape::tetrahedron : face_shape(length);
+    for (Index& corner : mesh_.cells[cell].first(static_cast<std::size_t>(length)))
+      corner = vertex(in, property);
+    return true;
   }
 
   /// Returns whether the values are 0, 1, 2 …
@@ -595,27 +505,24 @@ class Reader {
   /// Reads a coordinate or vertices of a cell; returns false for every other property.
   bool read_geometry(const Element& element, const Property& property, Index i) {
     if (element.role == Role::vertices) {
-      const int k = coordinate_of(property);
-      if (k < 0) return false;
-      mesh_.points[i][k] = body_.number_as<double>(property.type.type, "a coordinate");
-      if (!std::isfinite(mesh_.points[i][k]))
-        body_.fail("a coordinate is not finite", "a finite number is needed");
+      if (coordinate_of(property) < 0) return false;
+      read_coordinate(body_.scanner, property, mesh_.points[i]);
       return true;
     }
     if (element.role == Role::edges) {
       const int end = end_of(property);
-      if (end >= 0) ends_[end] = vertex(property);
+      if (end >= 0) ends_[end] = vertex(body_.scanner, property);
       return end >= 0;
     }
     if (element.role == Role::rows_of_faces || !is_corner_list(property)) return false;
     if (element.role == Role::strips) return read_strip(property);
-    const Index length = body_.list_length(property);
+    const Index length = body_.list_length(body_.scanner, property);
     if (length == 0) body_.fail("a " + element.name + " without vertices", "at least one is needed");
     if (element.role == Role::tetrahedra && length != 4) {
       body_.fail("a tetrahedron of " + std::to_string(length) + " vertices", "four are needed");
     }
     corners_.resize(length);
-    for (Index& corner : corners_) corner = vertex(property);
+    for (Index& corner : corners_) corner = vertex(body_.scanner, property);
     mesh_.cells.push_back(element.role == Role::tetrahedra ? Shape::tetrahedron : face_shape(length),
                           corners_);
     return true;
@@ -626,8 +533,8 @@ class Reader {
   bool read_strip(const Property& property) {
     std::array<Index, 3> last{};
     int known = 0;  // corners of the strip, of which three make a triangle
-    for (Index left = body_.list_length(property); left > 0; --left) {
-      const auto number = body_.number_as<std::int64_t>(property.type.type, "a vertex");
+    for (Index left = body_.list_length(body_.scanner, property); left > 0; --left) {
+      const auto number = body_.number_as<std::int64_t>(body_.scanner, property.type.type, "a vertex");
       if (number == -1) {
         known = 0;
         continue;
@@ -640,8 +547,8 @@ class Reader {
     return true;
   }
 
-  Index vertex(const Property& property) {
-    return checked_vertex(body_.number_as<std::int64_t>(property.type.type, "a vertex"));
+  Index vertex(Scanner& in, const Property& property) const {
+    return checked_vertex(body_.number_as<std::int64_t>(in, property.type.type, "a vertex"));
   }
 
   [[nodiscard]] Index checked_vertex(std::int64_t index) const {
@@ -714,13 +621,13 @@ class Reader {
     const std::int64_t begin = body_.scanner.byte();
     for (Index i = 0; i < element.count; ++i) {
       for (const Property& property : element.properties) {
-        const Index length = property.is_list ? body_.list_length(property) : 1;
+        const Index length = property.is_list ? body_.list_length(body_.scanner, property) : 1;
         if (!body_.binary && property.is_list) element.content += std::to_string(length) + " ";
         for (Index k = 0; k < length; ++k) {
           if (!body_.binary) {
             element.content += std::string(body_.scanner.word(property.name)) + " ";
           } else {
-            (void)body_.number_as<double>(property.type.type, property.name);
+            (void)body_.number_as<double>(body_.scanner, property.type.type, property.name);
           }
         }
       }

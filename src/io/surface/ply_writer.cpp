@@ -57,16 +57,9 @@ struct Table {
 };
 
 TypeWord word_of(const Values& values) {
-  constexpr std::array<std::pair<std::string_view, Type>, 8> kWords{{{"double", Type::float64},
-                                                                     {"float", Type::float32},
-                                                                     {"char", Type::int8},
-                                                                     {"uchar", Type::uint8},
-                                                                     {"short", Type::int16},
-                                                                     {"ushort", Type::uint16},
-                                                                     {"int", Type::int32},
-                                                                     {"uint", Type::uint32}}};
-  const std::size_t i = values.index();  // in the order of Values
-  return i < kWords.size() ? TypeWord{std::string(kWords[i].first), kWords[i].second} : TypeWord{};
+  const std::size_t type = values.index();
+  if (type >= ply::kTypeWords.size()) return {};
+  return {std::string(ply::kTypeWords[type].front()), static_cast<Type>(type)};
 }
 
 /// Returns the type in which 64-bit integers are written: PLY has no such type.
@@ -270,9 +263,10 @@ class Columns {
   /// every list.
   [[nodiscard]] Column widened(Column column) const {
     if (table_.element.role == Role::vertices) return column;
-    constexpr std::array<std::int64_t, 6> kLargest{127, 255, 32767, 65535, 2147483647, 4294967295};
     const auto holds = [&](const TypeWord& type, std::int64_t number) {
-      return number <= kLargest[static_cast<std::size_t>(type.type)];
+      return ply::with_type(type.type, [&]<class T>(T) {
+        return number <= static_cast<std::int64_t>(std::numeric_limits<T>::max());
+      });
     };
     const TypeWord whole{"int", Type::int32};
     if (!holds(column.property.type, mesh_.vertex_count() - 1)) column.property.type = whole;
@@ -376,24 +370,7 @@ class NumberWriter {
 
   template <class T>
   void number(Type type, T value) {
-    switch (type) {
-      case Type::int8:
-        return put(static_cast<std::int8_t>(value));
-      case Type::uint8:
-        return put(static_cast<std::uint8_t>(value));
-      case Type::int16:
-        return put(static_cast<std::int16_t>(value));
-      case Type::uint16:
-        return put(static_cast<std::uint16_t>(value));
-      case Type::int32:
-        return put(static_cast<std::int32_t>(value));
-      case Type::uint32:
-        return put(static_cast<std::uint32_t>(value));
-      case Type::float32:
-        return put(static_cast<float>(value));
-      case Type::float64:
-        return put(static_cast<double>(value));
-    }
+    ply::with_type(type, [&](auto zero) { put(static_cast<decltype(zero)>(value)); });
   }
 
   /// Writes a coordinate; text keeps all its digits, whatever its type.

@@ -53,13 +53,4 @@ Shape face_shape(Index vertices) {
   return vertices <= 4 ? kShapesOf[vertices - 1] : Shape::polygon;
 }
 
-void append_small_cells(std::span<const FewVertices> cells, Shape four, Cells& to) {
-  to.reserve(Offset{to.size()} + std::ssize(cells), std::ssize(to.vertices) + 3 * std::ssize(cells));
-  for (const FewVertices& cell : cells) {
-    const auto vertices = std::find(cell.begin(), cell.end(), -1) - cell.begin();
-    to.push_back(vertices == 4 ? four : face_shape(static_cast<Index>(vertices)),
-                 std::span(cell).first(static_cast<std::size_t>(vertices)));
-  }
-}
-
 }  // namespace meshorder

@@ -41,10 +41,4 @@ GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Association
 /// Returns the shape of a face, also of one with one or two vertices.
 Shape face_shape(Index vertices);
 
-/// The vertices of a cell that has at most four of them, then −1.
-using FewVertices = std::array<Index, 4>;
-
-/// Appends cells: faces, or, if `four` says so, tetrahedra. O(cells).
-void append_small_cells(std::span<const FewVertices> cells, Shape four, Cells& to);
-
 }  // namespace meshorder
