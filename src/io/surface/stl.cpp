@@ -102,13 +102,19 @@ Point normal_of(const Point& a, const Point& b, const Point& c) {
   return n;
 }
 
+struct Facet {
+  Point normal;
+  std::array<Point, 3> corners;
+};
+
 /// Builds the mesh triangle by triangle, and counts normals that contradict their triangles.
 struct Builder {
   Mesh mesh;
   PointTable table{mesh.points};
   Index against = 0;
 
-  void add(const Point& normal, const std::array<Point, 3>& corners) {
+  void add(const Facet& facet) {
+    const auto& [normal, corners] = facet;
     std::array<Index, 3> triangle{};
     for (int k = 0; k < 3; ++k) triangle[k] = table.number_of(corners[k]);
     mesh.cells.push_back(Shape::triangle, triangle);
@@ -162,7 +168,7 @@ Mesh read_binary(Scanner& scanner, StlMetadata& metadata, Notes& notes) {
       }
     }
     attribute = scanner.binary<std::uint16_t>("a triangle", kOrder);
-    builder.add(points[0], {points[1], points[2], points[3]});
+    builder.add({points[0], {points[1], points[2], points[3]}});
   }
   if (std::any_of(attributes.begin(), attributes.end(), [](std::uint16_t a) { return a != 0; })) {
     builder.mesh.data.push_back(
@@ -174,11 +180,9 @@ Mesh read_binary(Scanner& scanner, StlMetadata& metadata, Notes& notes) {
 
 void expect_word(Scanner& scanner, std::string_view expected) {
   const std::string_view word = scanner.peek_word();
-  if (!same_but_for_case(word, expected)) {
-    if (!word.empty()) {
-      scanner.fail("'" + std::string(expected) + "' is missing", "facets follow facet … outer loop … vertex");
-    }
-  }
+  if (word == expected) return scanner.move_on(word.size());
+  if (!word.empty() && !same_but_for_case(word, expected))
+    scanner.fail("'" + std::string(expected) + "' is missing", "facets follow facet … outer loop … vertex");
   (void)scanner.word("'" + std::string(expected) + "'");
 }
 
@@ -189,130 +193,55 @@ void expect_end(Scanner& scanner, const std::string& part) {
   expect_word(scanner, are_two_words ? part : "end" + part);
 }
 
-void read_facet(Scanner& scanner, Builder& builder) {
+Facet read_facet(Scanner& scanner) {
   expect_word(scanner, "facet");
-  Point normal{0, 0, 0};
-  const bool has_normal = !same_but_for_case(scanner.peek_word(), "outer");  // some programs write no normal
-  if (has_normal) expect_word(scanner, "normal");
-  for (std::size_t k = 0; has_normal && k < normal.size(); ++k) {
-    double& x = normal[k];
-    // the normal of a degenerate triangle may be anything; words that are not numbers are ignored
-    const std::string_view word = scanner.word("a normal");
-    if (std::from_chars(word.data(), word.data() + word.size(), x).ec != std::errc{}) x = 0;
+  Facet facet{};
+  if (!same_but_for_case(scanner.peek_word(), "outer")) {  // some programs write no normal
+    expect_word(scanner, "normal");
+    for (double& x : facet.normal) {
+      if (scanner.take_number(x)) continue;
+      // the normal of a degenerate triangle may be anything; words that are not numbers are ignored
+      const std::string_view word = scanner.word("a normal");
+      if (std::from_chars(word.data(), word.data() + word.size(), x).ec != std::errc{}) x = 0;
+    }
   }
   expect_word(scanner, "outer");
   expect_word(scanner, "loop");
-  std::array<Point, 3> corners;
-  for (Point& corner : corners) {
+  for (Point& corner : facet.corners) {
     expect_word(scanner, "vertex");
     for (double& x : corner) x = scanner.finite("a coordinate");
   }
   expect_end(scanner, "loop");
   expect_end(scanner, "facet");
-  builder.add(normal, corners);
+  return facet;
 }
 
-/// Parses lines on all threads, ahead of the scanner, and takes the facets that are in plain lines.
-class FacetLines {
- public:
-  explicit FacetLines(Scanner start) : end_(std::move(start)) {}
-
-  /// Adds the facets from the scanner's place on, up to the first one that is not in the seven lines in which
-  /// programs write it.
-  void take(Scanner& scanner, Builder& builder) {
-    while (!scanner.at_end()) {
-      while (first_ < count_ && lines_[first_].byte < scanner.byte()) ++first_;
-      if (count_ - first_ < kForm.size() && !parse(scanner)) return;
-      if (lines_[first_].byte != scanner.byte()) return;
-      const std::size_t before = first_;
-      for (; is_facet(); first_ += kForm.size()) {
-        const Line* const line = &lines_[first_];
-        builder.add(line[0].point, {line[2].point, line[3].point, line[4].point});
-      }
-      if (first_ == before) return;
-      if (first_ < count_) {
-        scanner.move_to(scanner.at(lines_[first_].byte, lines_[first_].number));
-      } else {
-        scanner.move_to(end_);
-      }
-    }
-  }
-
- private:
-  enum class Kind : std::uint8_t { facet, loop, vertex, end_loop, end_facet, other };
-  static constexpr std::array kForm{Kind::facet,  Kind::loop,     Kind::vertex,   Kind::vertex,
-                                    Kind::vertex, Kind::end_loop, Kind::end_facet};
-
-  struct Line {
-    std::int64_t byte = 0;    // of its first word
-    std::int64_t number = 0;  // of the line
-    Kind kind = Kind::other;
-    Point point{};
+/// Reads the facets of a solid: on all threads those in the seven lines in which programs write them, the
+/// others one by one. After a facet of another form, `are_regular` is false: all are then read one by one.
+void read_facets(Scanner& scanner, Builder& builder, bool& are_regular) {
+  constexpr Index kLines = 7;  // of a facet
+  constexpr std::size_t kMostAtOnce = std::size_t{1} << 15;
+  constexpr std::size_t kPartBytes = std::size_t{1} << 17;
+  const auto is_at_end = [&] {
+    const std::string_view word = scanner.peek_word();
+    return same_but_for_case(word, "endsolid") || same_but_for_case(word, "end");
   };
-
-  [[nodiscard]] bool is_facet() const {
-    return count_ - first_ >= kForm.size() &&
-           std::equal(kForm.begin(), kForm.end(), lines_.begin() + static_cast<std::ptrdiff_t>(first_),
-                      [](Kind kind, const Line& line) { return kind == line.kind; });
-  }
-
-  /// Parses the next lines; returns whether they are enough for a facet. Does not try again after a failure.
-  bool parse(const Scanner& scanner) {
-    constexpr std::int64_t kMostLines = 1 << 17;
-    constexpr std::size_t kPartBytes = std::size_t{1} << 17;
-    if (are_over_) return false;
-    lines_.resize(static_cast<std::size_t>(std::min(kMostLines, scanner.bytes_left())));
-    end_ = scanner;
-    const Index count = read_regular_records(
-        end_, index_size(lines_),
-        [&](Scanner& in, Index k) {
-          Line& line = lines_[static_cast<std::size_t>(k)];
-          line.byte = in.byte();
-          line.number = in.line();
-          line.kind = kind_of(in, line.point);
-          in.move_on(in.peek_line().size());
-          return true;
-        },
-        kPartBytes);
-    first_ = 0;
-    count_ = static_cast<std::size_t>(count);
-    are_over_ = count_ < kForm.size();
-    return !are_over_;
-  }
-
-  static Kind kind_of(Scanner& in, Point& point) {
-    const auto take_word = [&](std::string_view expected) {
-      const bool is_next = in.peek_word() == expected;
-      if (is_next) in.move_on(expected.size());
-      return is_next;
-    };
-    const auto take_point = [&] {
-      return std::all_of(point.begin(), point.end(),
-                         [&](double& x) { return !in.at_line_end() && in.take_number(x); });
-    };
-    Kind kind = Kind::other;
-    if (take_word("vertex")) {
-      const bool is_finite =
-          take_point() && std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); });
-      if (is_finite) kind = Kind::vertex;
-    } else if (take_word("facet")) {
-      if (!in.at_line_end() && take_word("normal") && take_point()) kind = Kind::facet;
-    } else if (take_word("outer")) {
-      if (!in.at_line_end() && take_word("loop")) kind = Kind::loop;
-    } else if (take_word("endloop")) {
-      kind = Kind::end_loop;
-    } else if (take_word("endfacet")) {
-      kind = Kind::end_facet;
+  std::vector<Facet> facets(64);  // more if there are many
+  while (!is_at_end()) {
+    if (!are_regular) {
+      builder.add(read_facet(scanner));
+      continue;
     }
-    return in.at_line_end() ? kind : Kind::other;
+    const auto read = [&](Scanner& in, Index k) {
+      facets[static_cast<std::size_t>(k)] = read_facet(in);
+      return true;
+    };
+    const Index count = read_regular_records(scanner, index_size(facets), read, kPartBytes, kLines);
+    for (Index k = 0; k < count; ++k) builder.add(facets[static_cast<std::size_t>(k)]);
+    are_regular = count > 0;
+    if (count == index_size(facets)) facets.resize(std::min(4 * facets.size(), kMostAtOnce));
   }
-
-  std::vector<Line> lines_;
-  std::size_t first_ = 0;  // line that is not taken
-  std::size_t count_ = 0;
-  Scanner end_;  // after all lines
-  bool are_over_ = false;
-};
+}
 
 /// Returns the labels of solids: their names if all are distinct integers, else 1, 2, …
 std::vector<std::int64_t> labels_of(const std::vector<std::string>& names) {
@@ -333,18 +262,13 @@ std::vector<std::int64_t> labels_of(const std::vector<std::string>& names) {
 
 Mesh read_ascii(Scanner& scanner, StlMetadata& metadata, Notes& notes) {
   Builder builder;
-  FacetLines lines(scanner);
+  bool are_regular = true;
   std::vector<Index> first_cells;
   while (!scanner.at_end()) {
     expect_word(scanner, "solid");
     metadata.names.emplace_back(scanner.rest_of_line());
     first_cells.push_back(builder.mesh.cells.size());
-    const auto is_at_end = [&] {
-      const std::string_view word = scanner.peek_word();
-      return same_but_for_case(word, "endsolid") || same_but_for_case(word, "end");
-    };
-    for (lines.take(scanner, builder); !is_at_end(); lines.take(scanner, builder))
-      read_facet(scanner, builder);
+    read_facets(scanner, builder, are_regular);
     expect_end(scanner, "solid");
     (void)scanner.rest_of_line();
   }
@@ -457,15 +381,12 @@ void write_binary(const Mesh& mesh, const StlMetadata& metadata, const DataArray
 void add_facet(Text& text, const Mesh& mesh, Index cell) {
   const auto t = mesh.cells[cell];
   const Point n = normal_of(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
-  const auto add_point = [&](std::string_view before, const Point& point) {
-    text.real(before, point[0]);
-    text.real(" ", point[1]);
-    text.real(" ", point[2]);
-  };
-  add_point("facet normal ", n);
+  text.write("facet normal");
+  text.reals(n);
   text.write("\n  outer loop\n");
   for (const Index v : t) {
-    add_point("    vertex ", mesh.points[v]);
+    text.write("    vertex");
+    text.reals(mesh.points[v]);
     text.write("\n");
   }
   text.write("  endloop\nendfacet\n");
