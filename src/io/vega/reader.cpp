@@ -2,8 +2,9 @@
 #include "base/text.hpp"
 #include "io/named_parts.hpp"
 #include "io/stream/id_map.hpp"
+#include "io/stream/read_limits.hpp"
 #include "io/stream/regular_text.hpp"
-#include "io/vega/lines.hpp"
+#include "io/stream/scanner.hpp"
 #include "io/vega/parts.hpp"
 #include <meshorder/error.hpp>
 
@@ -16,6 +17,7 @@
 #include <memory>
 #include <set>
 #include <span>
+#include <utility>
 
 namespace meshorder::vega {
 namespace {
@@ -23,6 +25,82 @@ namespace {
 constexpr std::string_view kSeparators = " \t,";
 
 std::string_view without_comment(std::string_view line) { return line.substr(0, line.find('#')); }
+
+/// The lines of a Vega file and, in place, of the files that it includes, without comments and blank lines.
+class Lines {
+ public:
+  explicit Lines(const FilePath& path) : main_(path) { open(path); }
+
+  /// Sets `line` to the next line, trimmed, without taking it; returns false at the end. The line is valid
+  /// until the next peek.
+  bool peek(std::string_view& line) {
+    while (true) {
+      Scanner& file = at();
+      if (file.bytes_left() == 0) {
+        if (files_.size() == 1) return false;
+        files_.pop_back();
+        continue;
+      }
+      line = trimmed(file.peek_line());
+      if (line.empty() || line.front() == '#') {
+        if (!line.empty()) comments_ += std::string(line) + "\n";
+        take();
+        continue;
+      }
+      std::string_view rest = line;
+      if (!same_but_for_case(next_word(rest), "*INCLUDE")) return true;
+      include(std::string(trimmed(rest)));
+    }
+  }
+  void take() { (void)at().raw_line(); }
+
+  /// The scanner whose position errors report.
+  [[nodiscard]] Scanner& at() { return *files_.back().scanner; }
+
+  /// Returns the comments since the last call, whole lines.
+  std::string take_comments() { return std::exchange(comments_, {}); }
+
+  /// Returns the names of the files included so far.
+  [[nodiscard]] const std::vector<std::string>& included() const noexcept { return included_; }
+
+ private:
+  struct OpenFile {
+    FilePath path;
+    std::unique_ptr<Scanner> scanner;
+  };
+
+  void open(const FilePath& path) { files_.push_back({path, std::make_unique<Scanner>(path)}); }
+
+  void include(const std::string& name) {
+    if (name.empty()) at().fail("*INCLUDE names no file", "write *INCLUDE and a file name");
+    // beside the file that includes it or, as Vega itself looks, beside the main file
+    FilePath path = files_.back().path.beside(name);
+    if (!path.exists()) path = main_.beside(name);
+    if (!may_include(main_, path)) {
+      at().fail("the included file '" + name + "' is not in the mesh's folder", kIncludeRemedy);
+    }
+    if (!path.is_file()) {
+      at().fail("the included file '" + name + "' does not exist", "put it beside this file");
+    }
+    for (const OpenFile& file : files_) {
+      if (file.path.is_same(path)) {
+        at().fail("the included file '" + name + "' includes itself", "remove the circle");
+      }
+    }
+    constexpr std::size_t kMostNested = 16;
+    if (files_.size() > kMostNested) at().fail("files are included more than 16 deep", "join some of them");
+    constexpr std::size_t kMost = 10000;
+    if (included_.size() == kMost) at().fail("more than 10000 files are included", "join them");
+    included_.push_back(name);
+    take();
+    if (!path.is_empty()) open(path);
+  }
+
+  FilePath main_;
+  std::vector<OpenFile> files_;
+  std::string comments_;
+  std::vector<std::string> included_;
+};
 
 class Reader {
  public:
@@ -45,7 +123,8 @@ class Reader {
       lines_.at().fail(std::string("the file has no ") + (has_vertices_ ? "*ELEMENTS" : "*VERTICES"),
                        "it may be cut short");
     }
-    label_by_region();
+    if (auto labels = region_numbers(*metadata_, mesh_); !labels.empty())
+      mesh_.data.push_back({std::string(kLabel), Association::cells, 1, std::move(labels), {}, {}});
     mesh_.vertex_ids = vertices_.ids_unless_from(metadata_->vertex_base);
     mesh_.cell_ids = elements_.ids_unless_from(metadata_->element_base);
     if (!mesh_.vertex_ids.empty() || !mesh_.cell_ids.empty()) {
@@ -205,12 +284,11 @@ class Reader {
     }
   }
 
-  /// Returns whether the lines have no attributes, and numbers that are not negative. A Scanner skips form
-  /// feeds and vertical tabs, which are errors here.
+  /// Returns whether the lines have no attributes. A Scanner skips form feeds and vertical tabs, which are
+  /// errors here.
   bool is_plain(const Header& header) {
     const bool has_columns = header.columns != decltype(header.columns){};
-    return !has_columns && !lines_.at().peek_word().starts_with('-') &&
-           !has_any_of(lines_.at().all(), "\f\v");
+    return !has_columns && !has_any_of(lines_.at().all(), "\f\v");
   }
 
   /// Reads vertices on all threads, up to the first one that is not numbered on or has more than numbers.
@@ -218,10 +296,10 @@ class Reader {
   Index read_plain_vertices(const Header& header) {
     if (!is_plain(header)) return 0;
     mesh_.points.resize(reservable(header.count, 3));
-    const Index count =
-        read_numbered_records(lines_.at(), index_size(mesh_.points), vertices_, [&](Scanner& in, Index v) {
-          return std::ranges::all_of(mesh_.points[v], [&](double& x) { return in.take_finite(x); });
-        });
+    const auto read = [&](Scanner& in, Index v) {
+      return std::ranges::all_of(mesh_.points[v], [&](double& x) { return in.take_finite(x); });
+    };
+    const Index count = read_numbered_records(lines_.at(), index_size(mesh_.points), vertices_, read, 0);
     mesh_.points.resize(static_cast<std::size_t>(count));
     return count;
   }
@@ -233,14 +311,15 @@ class Reader {
     std::vector<Index>& corners = mesh_.cells.vertices;
     const auto most = static_cast<Index>(reservable(header.count, tets ? 4 : 8));
     corners.resize(width * static_cast<std::size_t>(most));
-    const Index count = read_numbered_records(lines_.at(), most, elements_, [&](Scanner& in, Index e) {
+    const auto read = [&](Scanner& in, Index e) {
       return std::ranges::all_of(std::span(corners).subspan(width * e, width), [&](Index& corner) {
         std::int64_t number = 0;
         if (!in.take_number(number)) return false;
         corner = vertices_.find(number);
         return corner >= 0;
       });
-    });
+    };
+    const Index count = read_numbered_records(lines_.at(), most, elements_, read, 0);
     corners.resize(width * static_cast<std::size_t>(count));
     mesh_.cells.shapes.assign(static_cast<std::size_t>(count), tets ? Shape::tetrahedron : Shape::hexahedron);
     for (Index e = 0; e < count; ++e) {
@@ -382,9 +461,7 @@ class Reader {
     }
   }
 
-  void label_by_region();
-
-  VegaLines lines_;
+  Lines lines_;
   Notes& notes_;
   Mesh mesh_;
   std::shared_ptr<VegaMetadata> metadata_ = std::make_shared<VegaMetadata>();
@@ -395,12 +472,6 @@ class Reader {
   bool has_vertices_ = false;
   bool has_elements_ = false;
 };
-
-void Reader::label_by_region() {
-  auto labels = region_numbers(*metadata_, mesh_);
-  if (labels.empty()) return;
-  mesh_.data.push_back({std::string(kLabel), Association::cells, 1, std::move(labels), {}, {}});
-}
 
 }  // namespace
 
