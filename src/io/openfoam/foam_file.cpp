@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/openfoam/foam_file.hpp"
 
+#include "io/stream/byte_order.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/stream/scanner.hpp"
 #include <meshorder/error.hpp>
@@ -8,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -215,11 +215,9 @@ T FoamFile::binary(std::string_view what) {
   if (bytes_left() < static_cast<std::int64_t>(sizeof(T))) {
     fail(fmt::format("the file ends before {}", what), "it may be cut short");
   }
-  std::array<char, sizeof(T)> raw{};
-  std::copy_n(text_.begin() + static_cast<std::ptrdiff_t>(position_), sizeof(T), raw.begin());
-  if (order_ != std::endian::native) std::reverse(raw.begin(), raw.end());
+  const T value = number_at<T>(text_.data() + position_, order_);
   position_ += sizeof(T);
-  return std::bit_cast<T>(raw);
+  return value;
 }
 
 std::int64_t FoamFile::label(std::string_view what) {

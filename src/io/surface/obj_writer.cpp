@@ -178,10 +178,8 @@ class ObjWriter {
     // colours in whole numbers go up to 255, colours of OBJ up to 1
     const double scale = colors_.integers ? 255 : 1;
     write_rows(out_, mesh_.vertex_count(), [&](Text& row, Index v) {
-      const Point& p = mesh_.points[v];
-      row.real("v ", p[0]);
-      row.real(" ", p[1]);
-      row.real(" ", p[2]);
+      row.write("v");
+      row.reals(mesh_.points[v]);
       const Index color = color_rows_.empty() ? v : color_rows_[v];
       const Index weight = weight_rows_.empty() ? v : weight_rows_[v];
       if (colors_.width > 0 && color >= 0) {
@@ -207,7 +205,7 @@ class ObjWriter {
     if (vectors.width == 0) return;
     write_rows(out_, mesh_.vertex_count(), [&](Text& row, Index v) {
       row.write(keyword);
-      for (const double x : vectors[v]) row.real(" ", x);
+      row.reals(vectors[v]);
       row.write("\n");
     });
   }
