@@ -36,6 +36,11 @@ Values rows_of_values(const Values& values, Index components, std::span<const In
         std::decay_t<decltype(all)> chosen;
         chosen.reserve(rows.size() * static_cast<std::size_t>(components));
         for (const Index row : rows) {
+          if (row < 0) {
+            using Value = typename std::decay_t<decltype(all)>::value_type;
+            chosen.insert(chosen.end(), static_cast<std::size_t>(components), missing_value<Value>());
+            continue;
+          }
           const auto first = all.begin() + static_cast<std::ptrdiff_t>(row) * components;
           chosen.insert(chosen.end(), first, first + components);
         }

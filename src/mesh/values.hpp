@@ -77,7 +77,8 @@ inline Index item_count(const Mesh& mesh, Association association) {
 /// list for a dense array, in which vertex or cell i has row i. O(count).
 std::vector<Index> rows_by_item(const DataArray& array, Index count);
 
-/// Returns the given rows of an array's values, `components` values each. O(returned values).
+/// Returns the given rows of an array's values, `components` values each; for row −1, missing values.
+/// O(returned values).
 Values rows_of_values(const Values& values, Index components, std::span<const Index> rows);
 
 /// Makes an array dense if it has a row for each of `count` vertices or cells; its indices must be distinct.
@@ -112,6 +113,14 @@ template <class Fill>
 Values values_of_type(std::size_t type, const Fill& fill) {
   Values values = values_of_type(type);
   std::visit(fill, values);
+  return values;
+}
+
+/// As above; does not call `fill` for texts.
+template <class Fill>
+Values numbers_of_type(std::size_t type, const Fill& fill) {
+  Values values = values_of_type(type);
+  with_numbers(values, fill);
   return values;
 }
 

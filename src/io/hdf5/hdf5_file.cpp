@@ -99,26 +99,23 @@ File File::open(const FilePath& path) {
   return open(file.path_for_libraries(), path.string());
 }
 
+File File::made_of(hid_t file, std::string name, std::string_view what, const char* remedy) {
+  if (file < 0) throw InputError(name, fmt::format("HDF5 cannot {} it ({})", what, last_cause()), remedy);
+  return {Handle(file, H5Fclose), std::move(name)};
+}
+
 File File::open(const std::filesystem::path& path, std::string name) {
   const Session session;
   const Handle access = file_access();
-  Handle file(H5Fopen(path.string().c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
-  if (!file.is_open()) {
-    const std::string cause = last_cause();
-    throw InputError(name, fmt::format("HDF5 cannot open it ({})", cause),
-                     "it may be damaged, cut short, or open for writing elsewhere");
-  }
-  return {std::move(file), std::move(name)};
+  return made_of(H5Fopen(path.string().c_str(), H5F_ACC_RDONLY, access.id()), std::move(name), "open",
+                 "it may be damaged, cut short, or open for writing elsewhere");
 }
 
 File File::change(const std::filesystem::path& path, std::string name) {
   const Session session;
   const Handle access = file_access();
-  Handle file(H5Fopen(path.string().c_str(), H5F_ACC_RDWR, access.id()), H5Fclose);
-  if (!file.is_open()) {
-    throw InputError(name, fmt::format("HDF5 cannot write it ({})", last_cause()), "is the disk full?");
-  }
-  return {std::move(file), std::move(name)};
+  return made_of(H5Fopen(path.string().c_str(), H5F_ACC_RDWR, access.id()), std::move(name), "write",
+                 "is the disk full?");
 }
 
 File File::in_memory(std::string_view bytes, std::string name) {
@@ -127,14 +124,9 @@ File File::in_memory(std::string_view bytes, std::string name) {
   // the library takes two files with the same name for one file
   static std::uint64_t number = 0;
   const std::string label = fmt::format("meshorder-memory-{}", number++);
-  Handle file(bytes.empty() ? H5Fcreate(label.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id())
-                            : H5Fopen(label.c_str(), H5F_ACC_RDWR, access.id()),
-              H5Fclose);
-  if (!file.is_open()) {
-    throw InputError(name, fmt::format("HDF5 cannot open it ({})", last_cause()),
-                     "it may be damaged or cut short");
-  }
-  return {std::move(file), std::move(name)};
+  return made_of(bytes.empty() ? H5Fcreate(label.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id())
+                               : H5Fopen(label.c_str(), H5F_ACC_RDWR, access.id()),
+                 std::move(name), "open", "it may be damaged or cut short");
 }
 
 Handle File::open_dataset(const std::string& path) const {

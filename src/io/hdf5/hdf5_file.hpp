@@ -131,6 +131,8 @@ class File {
   void close();
 
  private:
+  /// Takes an open file of the library; throws if it could not be opened.
+  static File made_of(hid_t file, std::string name, std::string_view what, const char* remedy);
   /// Returns an unused path beside this path.
   [[nodiscard]] std::string free_path(const std::string& path) const;
   File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
@@ -145,6 +147,9 @@ class File {
   [[nodiscard]] std::vector<std::string> read_strings(const std::string& path, const Handle& dataset,
                                                       const Handle& type) const;
   void claim(const std::string& path, std::uint64_t bytes) const;
+  /// Throws unless the bytes of a dataset can hold `count` values.
+  void require_stored(const std::string& path, const Handle& dataset, std::uint64_t count,
+                      std::uint64_t bytes_each, std::string_view what) const;
   void write(const std::string& path, hid_t type, const void* values, std::uint64_t count,
              const std::vector<std::uint64_t>& shape);
   [[noreturn]] void fail(const std::string& path, const std::string& what, const std::string& remedy) const;

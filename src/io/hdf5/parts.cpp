@@ -4,6 +4,7 @@
 #include "io/hdf5/visitor.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace meshorder::hdf5 {
@@ -15,18 +16,15 @@ std::array<hid_t, 10> native_types() {
 
 std::size_t alternative_of(hid_t type) {
   // no other types: the library does not check their bit fields, which a damaged file may place anywhere
-  const std::array<std::array<hid_t, 2>, 10> known{{{H5T_IEEE_F64LE, H5T_IEEE_F64BE},
-                                                    {H5T_IEEE_F32LE, H5T_IEEE_F32BE},
-                                                    {H5T_STD_I8LE, H5T_STD_I8BE},
-                                                    {H5T_STD_U8LE, H5T_STD_U8BE},
-                                                    {H5T_STD_I16LE, H5T_STD_I16BE},
-                                                    {H5T_STD_U16LE, H5T_STD_U16BE},
-                                                    {H5T_STD_I32LE, H5T_STD_I32BE},
-                                                    {H5T_STD_U32LE, H5T_STD_U32BE},
-                                                    {H5T_STD_I64LE, H5T_STD_I64BE},
-                                                    {H5T_STD_U64LE, H5T_STD_U64BE}}};
-  const auto found = std::find_if(known.begin(), known.end(), [&](const std::array<hid_t, 2>& orders) {
-    return std::any_of(orders.begin(), orders.end(), [&](hid_t one) { return H5Tequal(type, one) > 0; });
+  constexpr bool kIsBig = std::endian::native == std::endian::big;
+  const std::array<hid_t, 10> known = native_types();
+  const auto is_other_order_of = [&](hid_t native) {
+    const Handle swapped(H5Tcopy(native), H5Tclose);
+    H5Tset_order(swapped.id(), kIsBig ? H5T_ORDER_LE : H5T_ORDER_BE);
+    return H5Tequal(type, swapped.id()) > 0;
+  };
+  const auto found = std::find_if(known.begin(), known.end(), [&](hid_t native) {
+    return H5Tequal(type, native) > 0 || is_other_order_of(native);
   });
   return static_cast<std::size_t>(found - known.begin());
 }

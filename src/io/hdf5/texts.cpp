@@ -58,11 +58,7 @@ std::vector<std::string> File::read_strings(const std::string& path, const Handl
   const hssize_t rows = H5Sget_simple_extent_npoints(space.id());
   if (rows < 0) fail(path, "has no values", "the file may be damaged");
   const auto count = static_cast<std::uint64_t>(rows);
-  if (count > most_bytes(dataset.id()) / kReference) {
-    fail(path,
-         fmt::format("claims {} texts, but only {} bytes are there", rows, H5Dget_storage_size(dataset.id())),
-         "it may never have been written, or the file is damaged");
-  }
+  require_stored(path, dataset, count, kReference, "texts");
   hsize_t bytes = 0;
   const bool is_sized = count == 0 || H5Dvlen_get_buf_size(dataset.id(), type.id(), space.id(), &bytes) >= 0;
   claim(path, bytes_for(count, sizeof(std::string) + sizeof(char*)) + bytes);
@@ -89,11 +85,7 @@ std::vector<std::string> File::read_texts(const std::string& path) const {
   const std::size_t width = width_of_texts(type.id());
   const hssize_t rows = H5Sget_simple_extent_npoints(space.id());
   if (width == 0 || rows < 0) fail(path, "does not hold texts of one length", "the file may be damaged");
-  if (static_cast<std::uint64_t>(rows) > most_bytes(dataset.id()) / width) {
-    fail(path,
-         fmt::format("claims {} texts, but only {} bytes are there", rows, H5Dget_storage_size(dataset.id())),
-         "it may never have been written, or the file is damaged");
-  }
+  require_stored(path, dataset, static_cast<std::uint64_t>(rows), width, "texts");
   claim(path, bytes_for(static_cast<std::uint64_t>(rows), width + sizeof(std::string)));
   std::string bytes(static_cast<std::size_t>(rows) * width, '\0');
   if (!bytes.empty()) read(path, type.id(), bytes.data());

@@ -110,14 +110,17 @@ DatasetInfo File::info(const std::string& path) const {
         refused_for_a_while(2 * bytes_of_chunk(creation.id(), type.id()), "a chunk of it");
     if (!fault.empty()) fail(path, "cannot be read: " + fault, kClaimRemedy);
   }
-  const std::uint64_t possible = most_bytes(dataset.id());
-  if (info.size() > possible / std::min<std::size_t>(H5Tget_size(type.id()), 8) && info.size() > 0) {
-    fail(path,
-         fmt::format("claims {} values, but only {} bytes are there", info.size(),
-                     H5Dget_storage_size(dataset.id())),
-         "it may never have been written, or the file is damaged");
-  }
+  require_stored(path, dataset, info.size(), std::min<std::size_t>(H5Tget_size(type.id()), 8), "values");
   return info;
+}
+
+void File::require_stored(const std::string& path, const Handle& dataset, std::uint64_t count,
+                          std::uint64_t bytes_each, std::string_view what) const {
+  if (count <= most_bytes(dataset.id()) / bytes_each) return;
+  fail(path,
+       fmt::format("claims {} {}, but only {} bytes are there", count, what,
+                   H5Dget_storage_size(dataset.id())),
+       "it may never have been written, or the file is damaged");
 }
 
 std::optional<std::size_t> File::number_type(const std::string& path) const {
@@ -141,13 +144,10 @@ void File::read(const std::string& path, hid_t type, void* values) const {
 Values File::read(const std::string& path) const {
   const Session session;
   const DatasetInfo of = info(path);
-  return values_of_type(of.alternative, [&](auto& numbers) {
-    using Number = typename std::decay_t<decltype(numbers)>::value_type;
-    if constexpr (std::is_arithmetic_v<Number>) {
-      claim(path, bytes_for(of.size(), sizeof(Number)));
-      resize_large(numbers, of.size());
-      if (!numbers.empty()) read(path, native_types()[of.alternative], numbers.data());
-    }
+  return numbers_of_type(of.alternative, [&](auto& numbers) {
+    claim(path, bytes_for(of.size(), sizeof(numbers[0])));
+    resize_large(numbers, of.size());
+    if (!numbers.empty()) read(path, native_types()[of.alternative], numbers.data());
   });
 }
 
