@@ -2,7 +2,7 @@
 #include "order_outputs.hpp"
 
 #include "base/text.hpp"
-#include "distributed/files/moved_grid.hpp"
+#include "distributed/files/moved_file.hpp"
 #include "distributed/files/moved_part.hpp"
 #include "io/format.hpp"
 #include "io/kept_cells.hpp"
@@ -84,22 +84,22 @@ void OrderOutputs::check(const Mesh& mesh) const {
 
 void OrderOutputs::write(const distributed::FileSlices& slices, const distributed::DistributedOrder& order,
                          const MeshChecksums& before, Notes& notes) {
+  distributed::MovedFile moved(communicator_, slices, order);
   if (!files_.output.empty()) {
     SharedOutput file(communicator_, set_, files_.output);
     std::optional<SharedOutput> data;
-    if (const std::string name = slices.new_data(communicator_, files_.output); !name.empty())
-      data.emplace(communicator_, set_, FilePath::derived(name));
-    const distributed::SliceFile target{file.path(), files_.output, data ? data->path() : ""};
-    const std::vector<distributed::GlobalIndex> new_cells = slices.write(communicator_, target, order);
+    const std::string name_of_data = slices.new_data(communicator_, files_.output);
+    if (!name_of_data.empty()) data.emplace(communicator_, set_, FilePath::derived(name_of_data));
+    moved.write({file.path(), files_.output, data ? data->path() : "", name_of_data});
     file.commit();
     if (data) data->commit();
     if (!files_.maps.empty()) {
-      const distributed::FileSlices written = slices.written(communicator_, target);
-      maps_ = write_sliced_maps(communicator_, {order.new_vertices, new_cells, order.report.part_starts},
-                                before, written.read(communicator_), files_.maps, set_);
+      maps_ =
+          write_sliced_maps(communicator_, {order.new_vertices, moved.new_cells(), order.report.part_starts},
+                            before, moved.slice(), files_.maps, set_);
     }
   }
-  if (!files_.pieces.empty()) write_pieces(slices.in_new_order(communicator_, order), order.report, notes);
+  if (!files_.pieces.empty()) write_pieces(moved.grid(), order.report, notes);
 }
 
 void OrderOutputs::write(const distributed::ExodusSlices& slices, const distributed::DistributedOrder& order,
@@ -116,8 +116,7 @@ void OrderOutputs::write(const distributed::ExodusSlices& slices, const distribu
   }
   if (files_.has_nemesis_pieces()) return write_nemesis(std::move(moved), slices, order.report);
   Notes of_pieces;
-  distributed::MovedGrid grid(communicator_, moved);
-  write_pieces(grid.rows(of_pieces), order.report, notes);
+  write_pieces(moved_grid(communicator_, moved, of_pieces), order.report, notes);
   add_new(of_pieces, notes);
 }
 

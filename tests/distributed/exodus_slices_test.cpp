@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/files/exodus_slices.hpp"
 
-#include "distributed/files/moved_grid.hpp"
+#include "distributed/files/grid_rows.hpp"
 #include "distributed/files/moved_part.hpp"
 #include "distributed/files/pieces.hpp"
 #include "io/format.hpp"
@@ -133,8 +133,7 @@ void expect_alike(const Communicator& communicator, const std::string& path,
   expect_equal(moved.slice(), scattered(communicator, whole));
   Notes expected_notes;
   const GridRows expected = scattered_grid(communicator, whole, expected_notes);
-  MovedGrid grid(communicator, moved);
-  expect_equal(communicator, grid.rows(of_grid), expected);
+  expect_equal(communicator, moved_grid(communicator, moved, of_grid), expected);
   EXPECT_EQ(of_grid, expected_notes);
 }
 
@@ -223,8 +222,7 @@ TEST(ExodusSlices, IdsStayWhereNothingMoves) {
   communicator.at_root([&] { whole = read_for_vtu(file.path()); });
   move(communicator, whole, order);
   const GridRows expected = scattered_grid(communicator, whole, notes);
-  MovedGrid grid(communicator, moved);
-  expect_equal(communicator, grid.rows(notes), expected);
+  expect_equal(communicator, moved_grid(communicator, moved, notes), expected);
 }
 
 TEST(ExodusSlices, LeaveOtherFilesToRank0) {

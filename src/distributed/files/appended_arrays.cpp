@@ -2,20 +2,63 @@
 #include "distributed/files/appended_arrays.hpp"
 
 #include "base/memory.hpp"
-#include "distributed/files/vtu_offsets.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
+#include <string_view>
+#include <utility>
 
 namespace meshorder::distributed {
 namespace {
 
 constexpr const char* kCutShort = "the file may be cut short";
+constexpr Offset kMostBytes = std::numeric_limits<Offset>::max();
+constexpr std::size_t kMostDigits = std::numeric_limits<Offset>::digits10 + 1;
 
 }  // namespace
+
+VtuXml::VtuXml(std::string text, const vtk::VtuDocument& file) : text_(std::move(text)) {
+  add_places(file, file.root());
+  std::sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) { return a.at < b.at; });
+}
+
+void VtuXml::add_places(const vtk::VtuDocument& file, const vtk::VtuElement& element) {
+  if (element.text_of("format") == "appended") {
+    const Offset offset = file.count(element, "offset", kMostBytes);
+    const vtk::VtuAttribute& attribute = *element.find("offset");
+    places_.push_back({attribute.at, attribute.size, offset});
+  }
+  for (const vtk::VtuElement& child : element.children) add_places(file, child);
+}
+
+std::vector<Offset> VtuXml::offsets() const {
+  std::vector<Offset> result;
+  for (const Place& place : places_) result.push_back(place.offset);
+  return result;
+}
+
+Offset VtuXml::most_bytes() const {
+  std::size_t bytes = text_.find_last_not_of(vtk::kXmlBlanks, text_.size() - 2) + 2;
+  for (const Place& place : places_) bytes += kMostDigits - std::min(place.size, kMostDigits);
+  return static_cast<Offset>(std::max(bytes, text_.size()));
+}
+
+std::string VtuXml::with_offsets(const std::function<Offset(Offset)>& moved, Offset bytes) const {
+  std::string result;
+  std::size_t at = 0;
+  for (const Place& place : places_) {
+    result += std::string_view(text_).substr(at, place.at - at);
+    result += std::to_string(moved(place.offset));
+    at = place.at + place.size;
+  }
+  result += std::string_view(text_).substr(at, text_.size() - 1 - at);
+  result.resize(static_cast<std::size_t>(bytes) - 1, ' ');  // pads, or cuts blanks that an earlier call added
+  return result + '_';
+}
 
 AppendedArrays::AppendedArrays(const std::string& path, const vtk::VtuDocument& document, Offset first_byte,
                                int ranks)
@@ -28,7 +71,7 @@ AppendedArrays::AppendedArrays(const std::string& path, const vtk::VtuDocument& 
 
 Offset AppendedArrays::place(const vtk::VtuElement& element, FilePart& part, std::vector<Offset>& bounds) {
   const std::string what = fmt::format("the array '{}'", element.text_of("Name").substr(0, 40));
-  const Offset offset = whole_number(document_, element, "offset");
+  const Offset offset = document_.count(element, "offset", kMostBytes);
   if (offset > bytes_ - first_byte_)
     throw document_.error(element, what + " lies beyond the end of the file", kCutShort);
   part.at = at_ = first_byte_ + offset;

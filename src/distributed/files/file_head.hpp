@@ -2,7 +2,7 @@
 #pragma once
 
 #include "distributed/comm/layout.hpp"
-#include "distributed/files/vtu_offsets.hpp"
+#include "distributed/files/appended_arrays.hpp"
 #include "io/file_layout.hpp"
 #include "io/vtu.hpp"
 

@@ -3,10 +3,12 @@
 
 #include "distributed/comm/communicator.hpp"
 #include "distributed/comm/layout.hpp"
+#include "distributed/comm/moved_rows.hpp"
 #include "distributed/files/shared_file.hpp"
 #include "io/file_layout.hpp"
 #include "io/vtu.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -19,6 +21,19 @@ struct PartName {
   const std::string& file;
   const std::string& part;
 };
+
+/// Returns the values that move to this rank's places; `values` has one for each own row. Every rank has to
+/// call it. O(values). Throws as `RowMover::moved`.
+template <class Value>
+[[nodiscard]] std::vector<Value> moved_values(const Communicator& communicator, const RowMover& mover,
+                                              const std::vector<Value>& values) {
+  const std::vector<std::byte> bytes = mover.moved(std::as_bytes(std::span(values)), Offset{sizeof(Value)});
+  return communicator.together([&] {
+    std::vector<Value> moved(bytes.size() / sizeof(Value));
+    std::copy(bytes.begin(), bytes.end(), std::as_writable_bytes(std::span(moved)).begin());
+    return moved;
+  });
+}
 
 /// Reads bytes begin … end − 1 of the values of an array; each rank has its own range. If the array is
 /// compressed, reads whole blocks. Every rank has to call it. O(bytes + size of a block) time; at the root

@@ -14,6 +14,8 @@
 
 namespace meshorder::distributed {
 
+class MovedPart;
+
 /// A mesh in its new order, in the form of a .vtu file. Every rank has the rows of a range of new numbers.
 struct GridRows {
   Layout vertices;
@@ -36,5 +38,15 @@ struct GridRows {
 /// @param notes  receives, at the root, notes on data that VTK's files store in another form
 /// @throws as `Communicator::exchange`
 [[nodiscard]] GridRows scattered_grid(const Communicator& communicator, const Mesh& mesh, Notes& notes);
+
+/// Returns a moved mesh: equal to what `scattered_grid` makes from the whole mesh in its new order. The types
+/// of labels and ids fit the values of all ranks; the marks of a set follow the order of all its members.
+/// Every rank has to call it. O(size of the part).
+///
+/// @param communicator  must outlive the result
+/// @param moved  must outlive the result, and have only cells that VTK can hold; its cells are moved out of
+/// it
+/// @param notes  as for `scattered_grid`
+[[nodiscard]] GridRows moved_grid(const Communicator& communicator, MovedPart& moved, Notes& notes);
 
 }  // namespace meshorder::distributed

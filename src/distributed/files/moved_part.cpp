@@ -3,6 +3,7 @@
 
 #include "distributed/comm/halo.hpp"
 #include "distributed/comm/number_types.hpp"
+#include "distributed/files/file_rows.hpp"
 #include "distributed/order/cell_order.hpp"
 #include "distributed/order/number_order.hpp"
 #include "io/vtk/vtk.hpp"
@@ -179,20 +180,12 @@ MeshSlice MovedPart::slice() const {
   MeshSlice slice;
   slice.vertices = vertices_.layout;
   slice.cells = cells_.layout;
-  const std::vector<std::byte> points =
-      vertices_.mover->moved(std::as_bytes(std::span(part_.mesh.points)), sizeof(Point));
-  const std::vector<std::byte> shapes =
-      cells_.mover->moved(std::as_bytes(std::span(part_.mesh.cells.shapes)), sizeof(Shape));
+  slice.points = moved_values(communicator_, *vertices_.mover, part_.mesh.points);
+  slice.shapes = moved_values(communicator_, *cells_.mover, part_.mesh.cells.shapes);
   slice.cell_vertices = moved_cells(communicator_.together([&] {
     const Cells& cells = part_.mesh.cells;
     return Rows{cells.offsets, {cells.vertices.begin(), cells.vertices.end()}};
   }));
-  communicator_.together([&] {
-    slice.points.resize(points.size() / sizeof(Point));
-    slice.shapes.resize(shapes.size() / sizeof(Shape));
-    std::copy(points.begin(), points.end(), std::as_writable_bytes(std::span(slice.points)).begin());
-    std::copy(shapes.begin(), shapes.end(), std::as_writable_bytes(std::span(slice.shapes)).begin());
-  });
   return slice;
 }
 

@@ -3,7 +3,6 @@
 
 #include "base/text.hpp"
 #include "distributed/files/text_store.hpp"
-#include "distributed/files/vtu_offsets.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_document.hpp"
 
@@ -40,9 +39,9 @@ template <std::size_t N>
 std::string attributes_without(const vtk::VtuElement& element,
                                const std::array<std::string_view, N>& left_out) {
   std::string text;
-  for (const auto& [name, value] : element.attributes) {
-    if (std::find(left_out.begin(), left_out.end(), name) == left_out.end())
-      text += fmt::format(" {}=\"{}\"", name, xml_escaped(value));
+  for (const vtk::VtuAttribute& own : element.attributes) {
+    if (std::find(left_out.begin(), left_out.end(), own.name) == left_out.end())
+      text += fmt::format(" {}=\"{}\"", own.name, xml_escaped(own.value));
   }
   return text;
 }
@@ -72,7 +71,7 @@ PieceArray taken(const vtk::VtuDocument& file, const vtk::VtuElement& element, s
   PieceArray array;
   array.association = section % 2 == 0 ? Association::vertices : Association::cells;
   array.type = static_cast<std::uint8_t>(element.number_type());
-  array.components = static_cast<Index>(whole_number(file, element, "NumberOfComponents", 1));
+  array.components = static_cast<Index>(file.components(element));
   array.number = k;
   array.name = element.text_of("Name");
   array.attributes = attributes_without(element, kOfValues);

@@ -2,10 +2,8 @@
 #include "distributed/files/slice_reader.hpp"
 
 #include "cells/cell_arrays.hpp"
-#include "distributed/comm/halo.hpp"
 #include "distributed/comm/number_types.hpp"
 #include "distributed/files/file_rows.hpp"
-#include "distributed/order/cell_order.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/shape.hpp>
 
@@ -13,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <utility>
 
 namespace meshorder::distributed {
@@ -158,55 +155,6 @@ void SliceReader::read_cells(MeshSlice& slice) const {
                        fmt::format("the file has points 0 to {}", head_.facts.vertices - 1));
     }
   });
-}
-
-MovedFile::MovedFile(const Communicator& communicator, const std::string& path, const FileHead& head,
-                     const DistributedOrder& order)
-    : communicator_(communicator),
-      reader_(communicator, path, head),
-      order_(order),
-      slice_([&] {
-        MeshSlice slice = reader_.empty_slice();
-        reader_.read_shapes(slice);
-        return slice;
-      }()),
-      vertices_(communicator, slice_.vertices, order.new_vertices),
-      new_cells_(places_by_dimension(communicator, slice_, order.cells)),
-      cell_mover_(communicator, slice_.cells, new_cells_) {}
-
-Rows& MovedFile::cells() {
-  if (cells_) return *cells_;
-  reader_.read_cells(slice_);
-  slice_.shapes = {};
-  Rows rows = std::move(slice_.cell_vertices);
-  {
-    const Halo halo(communicator_, slice_.vertices, rows.entries);
-    const std::vector<GlobalIndex> new_numbers = halo.fetch(order_.new_vertices);
-    for (GlobalIndex& number : rows.entries) number = new_numbers[halo.position(number)];
-  }
-  return cells_.emplace(cell_mover_.moved(std::move(rows)));
-}
-
-std::vector<std::byte> MovedFile::rows(const FilePart& part) {
-  const int rank = communicator_.rank();
-  if (part.role == Role::connectivity) {
-    const Rows& moved = cells();
-    return communicator_.together([&] { return bytes_of(moved.entries, part.type); });
-  }
-  if (part.role == Role::offsets) {
-    const Rows& moved = cells();
-    const GlobalIndex first_entry =
-        Layout::of_sizes(communicator_.gathered(std::ssize(moved.entries))).begin(rank);
-    return communicator_.together([&] {
-      std::vector<GlobalIndex> ends(moved.offsets.begin() + 1, moved.offsets.end());
-      for (GlobalIndex& end : ends) end += first_entry;
-      return bytes_of(ends, part.type);
-    });
-  }
-  const bool on_vertices = part.association == Association::vertices;
-  const Layout& layout = on_vertices ? slice_.vertices : slice_.cells;
-  const std::vector<std::byte> values = reader_.rows(part, layout.begin(rank), layout.end(rank));
-  return (on_vertices ? vertices_ : cell_mover_).moved(values, part.row_size());
 }
 
 }  // namespace meshorder::distributed

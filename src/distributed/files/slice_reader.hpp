@@ -3,15 +3,11 @@
 
 #include "distributed/comm/communicator.hpp"
 #include "distributed/comm/layout.hpp"
-#include "distributed/comm/moved_rows.hpp"
-#include "distributed/comm/rows.hpp"
 #include "distributed/files/file_head.hpp"
 #include "distributed/files/shared_file.hpp"
 #include "distributed/order/mesh_slice.hpp"
-#include "distributed/order/order.hpp"
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +22,7 @@ class SliceReader {
   /// @throws SharedError if a rank cannot open it
   SliceReader(const Communicator& communicator, const std::string& path, const FileHead& head);
 
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] const SharedFile& file() const noexcept { return file_; }
   [[nodiscard]] const FilePart& part(FilePart::Role role) const;
   /// Returns the ranges of all ranks, without points and cells.
@@ -48,33 +45,6 @@ class SliceReader {
   const std::string& path_;
   const FileHead& head_;
   SharedFile file_;
-};
-
-/// The parts of a file with their rows in new places. Every rank has to call all functions.
-class MovedFile {
- public:
-  /// As SliceReader; reads the shapes of the cells. `order` must outlive the first call of `cells`.
-  MovedFile(const Communicator& communicator, const std::string& path, const FileHead& head,
-            const DistributedOrder& order);
-
-  [[nodiscard]] const SliceReader& reader() const noexcept { return reader_; }
-  /// Returns the new place of each cell of the slice.
-  [[nodiscard]] const std::vector<GlobalIndex>& new_cells() const noexcept { return new_cells_; }
-  /// Returns the cells in this rank's range of new places, with the new numbers of their vertices. Reads them
-  /// at the first call.
-  [[nodiscard]] Rows& cells();
-  /// Returns the rows of a part in this rank's range of new places.
-  [[nodiscard]] std::vector<std::byte> rows(const FilePart& part);
-
- private:
-  const Communicator& communicator_;
-  SliceReader reader_;
-  const DistributedOrder& order_;
-  MeshSlice slice_;
-  RowMover vertices_;
-  std::vector<GlobalIndex> new_cells_;
-  RowMover cell_mover_;
-  std::optional<Rows> cells_;
 };
 
 }  // namespace meshorder::distributed

@@ -16,6 +16,7 @@
 #include <bit>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -24,6 +25,7 @@ namespace meshorder::distributed {
 namespace {
 
 constexpr std::size_t kLongestHead = std::size_t{1} << 26;
+constexpr Offset kMost = std::numeric_limits<Offset>::max();
 constexpr Offset kMostComponents = Offset{1} << 24;
 constexpr std::string_view kAppended = "<AppendedData";
 
@@ -85,8 +87,8 @@ class HeadReader {
   }
 
   bool read_piece(const vtk::VtuDocument& file, const vtk::VtuElement& piece, AppendedArrays& arrays) {
-    head_.facts.vertices = whole_number(file, piece, "NumberOfPoints");
-    head_.facts.cells = whole_number(file, piece, "NumberOfCells");
+    head_.facts.vertices = file.count(piece, "NumberOfPoints", kMost);
+    head_.facts.cells = file.count(piece, "NumberOfCells", kMost);
     for (const vtk::VtuElement& section : piece.children) {
       for (const vtk::VtuElement& element : section.children) {
         if (!read_array(file, section.name, element, arrays)) return false;
@@ -125,7 +127,7 @@ class HeadReader {
     }
     part.association = on_vertices ? Association::vertices : Association::cells;
     part.type = static_cast<std::uint8_t>(element.number_type());
-    const Offset components = whole_number(file, element, "NumberOfComponents", 1);
+    const Offset components = file.components(element);
     const bool is_whole = part.type > 1;
     const bool fits = part.role == Role::points ? components == 3 && !is_whole
                       : part.role == Role::data ? components > 0 && components < kMostComponents

@@ -310,17 +310,12 @@ void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& ty
     const Offset same = std::lround(std::cbrt(n)) - 1;
     std::array<Offset, 3> degrees{same, same, same};
     if (usable) {
-      std::visit(
-          [&](const auto& values) {
-            using Number = typename std::decay_t<decltype(values)>::value_type;
-            if constexpr (!std::is_same_v<Number, std::string>) {
-              for (int i = 0; i < 3; ++i) {
-                const auto degree = static_cast<double>(values[3 * Offset{c} + i]);
-                degrees[i] = degree >= 1 && degree <= n ? static_cast<Offset>(degree) : same;
-              }
-            }
-          },
-          array->values);
+      with_numbers(array->values, [&](const auto& values) {
+        for (int i = 0; i < 3; ++i) {
+          const auto degree = static_cast<double>(values[3 * Offset{c} + i]);
+          degrees[i] = degree >= 1 && degree <= n ? static_cast<Offset>(degree) : same;
+        }
+      });
     }
     // the swapped edges come after 8 corners, the edges along x and y, and two edges along z
     const Offset along_z = degrees[2] - 1;

@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <string_view>
-#include <type_traits>
 #include <utility>
-#include <variant>
 
 namespace meshorder::vtk {
 namespace {
@@ -16,21 +14,14 @@ constexpr std::string_view kGhostType = "vtkGhostType";
 /// Bit in an entry of vtkGhostType: another piece owns the point or cell.
 constexpr std::int64_t kOfAnotherPiece = 1;
 
-/// The rows of points or cells that are kept, in their order.
-using RowsKept = std::vector<Index>;
-
-std::string_view word_for(Association association) {
-  return association == Association::vertices ? "point" : "cell";
-}
-
 class PieceJoiner {
  public:
   PieceJoiner(const Pieces& pieces, const ErrorAt& error, Notes& notes)
       : pieces_(pieces), error_(error), notes_(notes) {}
 
   void join() {
-    const RowsKept cells = cells_kept();
-    const RowsKept points = points_kept(cells);
+    const std::vector<Index> cells = cells_kept();
+    const std::vector<Index> points = points_kept(cells);
     take_cells_of(cells);
     const std::vector<Point> all = std::move(pieces_.points);
     pieces_.points.clear();
@@ -72,18 +63,11 @@ class PieceJoiner {
     bool says_more = false;
     for (DataArray& array : pieces_.arrays) {
       if (array.association != association || array.name != kGhostType) continue;
-      std::visit(
-          [&](auto& values) {
-            using Number = typename std::decay_t<decltype(values)>::value_type;
-            if constexpr (std::is_integral_v<Number>) {
-              for (Number& value : values)
-                value = static_cast<Number>(value & ~static_cast<Number>(kOfAnotherPiece));
-              says_more = std::any_of(values.begin(), values.end(), [](Number value) { return value != 0; });
-            } else {
-              says_more = true;
-            }
-          },
-          array.values);
+      says_more = !with_integers(array.values, []<class Number>(std::vector<Number>& values) {
+        for (Number& value : values)
+          value = static_cast<Number>(value & ~static_cast<Number>(kOfAnotherPiece));
+        return std::all_of(values.begin(), values.end(), [](Number value) { return value == 0; });
+      });
     }
     if (!says_more) erase(association, std::string(kGhostType));
   }
@@ -107,7 +91,8 @@ class PieceJoiner {
     std::vector<std::int64_t> ids = integers(association, name_of_ids(association));
     const auto negative = std::find_if(ids.begin(), ids.end(), [](std::int64_t id) { return id < 0; });
     if (negative != ids.end()) {
-      throw error_(fmt::format("a {} has the global id {}", word_for(association), *negative),
+      const char* const kind = association == Association::vertices ? "point" : "cell";
+      throw error_(fmt::format("a {} has the global id {}", kind, *negative),
                    "ids are whole numbers from 0 on");
     }
     return ids;
@@ -129,9 +114,9 @@ class PieceJoiner {
     return result;
   }
 
-  [[nodiscard]] RowsKept cells_kept() const {
+  [[nodiscard]] std::vector<Index> cells_kept() const {
     const std::vector<bool> is_ghost = ghosts(Association::cells);
-    RowsKept rows;
+    std::vector<Index> rows;
     for (Index row = 0; row < count(Association::cells); ++row) {
       if (!is_ghost[static_cast<std::size_t>(row)]) rows.push_back(row);
     }
@@ -148,7 +133,7 @@ class PieceJoiner {
   }
 
   /// Returns the points that stay, and renumbers the entries of all cells.
-  [[nodiscard]] RowsKept points_kept(const RowsKept& cells) {
+  [[nodiscard]] std::vector<Index> points_kept(const std::vector<Index>& cells) {
     const std::vector<bool> is_ghost = ghosts(Association::vertices);
     std::vector<bool> is_used(is_ghost.size(), false);
     const FileCells& all = pieces_.cells;
@@ -156,7 +141,7 @@ class PieceJoiner {
       for (Offset entry = all.offsets[cell]; entry < all.offsets[cell + 1]; ++entry)
         is_used[static_cast<std::size_t>(all.vertices[entry])] = true;
     }
-    RowsKept rows;
+    std::vector<Index> rows;
     for (Index row = 0; row < count(Association::vertices); ++row) {
       const auto place = static_cast<std::size_t>(row);
       if (!is_ghost[place] || is_used[place]) rows.push_back(row);
@@ -171,7 +156,7 @@ class PieceJoiner {
         return ids[a] != ids[b] ? ids[a] < ids[b] : !is_ghost[a] && is_ghost[b];
       });
     }
-    RowsKept kept;
+    std::vector<Index> kept;
     for (const Index row : rows) {
       if (!ids.empty() && !kept.empty() && ids[kept.back()] == ids[row]) {
         if (pieces_.points[kept.back()] != pieces_.points[row]) {
@@ -189,7 +174,7 @@ class PieceJoiner {
   }
 
   /// Keeps only the cells of these rows.
-  void take_cells_of(const RowsKept& rows) {
+  void take_cells_of(const std::vector<Index>& rows) {
     const FileCells all = std::move(pieces_.cells);
     FileCells& cells = pieces_.cells = {};
     std::vector<Index> new_cells(all.types.size(), -1);
@@ -206,20 +191,10 @@ class PieceJoiner {
   }
 
   /// Keeps only these rows in all arrays on points, or in all arrays on cells.
-  void take_rows(Association association, const RowsKept& rows) {
+  void take_rows(Association association, const std::vector<Index>& rows) {
     for (DataArray& array : pieces_.arrays) {
-      if (array.association != association) continue;
-      std::visit(
-          [&](auto& values) {
-            std::decay_t<decltype(values)> taken;
-            taken.reserve(rows.size() * static_cast<std::size_t>(array.components));
-            for (const Index row : rows) {
-              const auto first = values.begin() + Offset{row} * array.components;
-              taken.insert(taken.end(), first, first + array.components);
-            }
-            values = std::move(taken);
-          },
-          array.values);
+      if (array.association == association)
+        array.values = rows_of_values(array.values, array.components, rows);
     }
   }
 

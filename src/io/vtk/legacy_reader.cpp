@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -268,38 +267,34 @@ class LegacyReader {
                               "each is where a cell begins, the last is the size of CONNECTIVITY");
     }
     const DataArray vertices = read_part("CONNECTIVITY", size);
-    std::visit(
-        [&](const auto& numbers) {
-          using Number = typename std::decay_t<decltype(numbers)>::value_type;
-          if constexpr (std::is_integral_v<Number>) {
-            // no early exit: the loop can then be vectorised
-            resize_large(cells.vertices, numbers.size());
-            const std::int64_t limit = point_limit();
-            std::size_t missing = 0;
-            for (std::size_t i = 0; i < numbers.size(); ++i) {
-              missing += static_cast<std::size_t>(std::cmp_less(numbers[i], 0)) +
-                         static_cast<std::size_t>(std::cmp_greater_equal(numbers[i], limit));
-              cells.vertices[i] = static_cast<Index>(numbers[i]);
-            }
-            if (missing == 0) return;
-            // a number of a polyhedron need not be a point; a number that does not fit an Index is a fault in
-            // any cell
-            for (std::size_t i = 0; i < numbers.size(); ++i) {
-              if (!std::in_range<Index>(numbers[i])) cells.vertices[i] = -1;
-            }
-            const auto wrong = std::find_if(numbers.begin(), numbers.end(), [&](Number vertex) {
-              return std::cmp_less(vertex, 0) || std::cmp_greater_equal(vertex, limit);
-            });
-            const auto cell = std::upper_bound(cells.offsets.begin(), cells.offsets.end(),
-                                               static_cast<Offset>(wrong - numbers.begin())) -
-                              cells.offsets.begin() - 1;
-            keep_fault_at_vertex(std::in_range<Index>(*wrong) ? static_cast<std::int64_t>(*wrong) : -1, cell);
-          } else {
-            throw in_.section_error(cells_line_, "the CONNECTIVITY of " + key + " is not a list of integers",
-                                    "an integer type is needed");
-          }
-        },
-        vertices.values);
+    if (!are_integers(vertices.values)) {
+      throw in_.section_error(cells_line_, "the CONNECTIVITY of " + key + " is not a list of integers",
+                              "an integer type is needed");
+    }
+    with_integers(vertices.values, [&]<class Number>(const std::vector<Number>& numbers) {
+      // no early exit: the loop can then be vectorised
+      resize_large(cells.vertices, numbers.size());
+      const std::int64_t limit = point_limit();
+      std::size_t missing = 0;
+      for (std::size_t i = 0; i < numbers.size(); ++i) {
+        missing += static_cast<std::size_t>(std::cmp_less(numbers[i], 0)) +
+                   static_cast<std::size_t>(std::cmp_greater_equal(numbers[i], limit));
+        cells.vertices[i] = static_cast<Index>(numbers[i]);
+      }
+      if (missing == 0) return;
+      // a number of a polyhedron need not be a point; a number that does not fit an Index is a fault in any
+      // cell
+      for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if (!std::in_range<Index>(numbers[i])) cells.vertices[i] = -1;
+      }
+      const auto wrong = std::find_if(numbers.begin(), numbers.end(), [&](Number vertex) {
+        return std::cmp_less(vertex, 0) || std::cmp_greater_equal(vertex, limit);
+      });
+      const auto cell = std::upper_bound(cells.offsets.begin(), cells.offsets.end(),
+                                         static_cast<Offset>(wrong - numbers.begin())) -
+                        cells.offsets.begin() - 1;
+      keep_fault_at_vertex(std::in_range<Index>(*wrong) ? static_cast<std::int64_t>(*wrong) : -1, cell);
+    });
   }
 
   void read_cell_types() {

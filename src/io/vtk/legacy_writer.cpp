@@ -145,19 +145,12 @@ class LegacyWriter {
     out_.write("\n");
   }
 
-  template <class Number>
-  void write_text(std::span<const Number> numbers, std::size_t in_line) {
-    write_lines(out_, numbers.size(), in_line,
-                [&](Text& line, std::string_view before, std::size_t i) { line.number(before, numbers[i]); });
-  }
-
   template <class Stored, class Number>
   void write_numbers(std::span<const Number> numbers, std::size_t in_line) {
-    if (layout_.binary) {
-      write_binary<Stored>(numbers);
-    } else {
-      write_text(numbers, in_line);
-    }
+    if (layout_.binary) return write_binary<Stored>(numbers);
+    write_lines(out_, numbers.size(), in_line, [&](Text& line, std::string_view before, std::size_t i) {
+      line.number(before, static_cast<Stored>(numbers[i]));
+    });
   }
 
   void write_text_value(const std::string& text) {
@@ -248,16 +241,10 @@ class LegacyWriter {
   void write_points() {
     const bool floats = from_.points_are_floats();
     out_.print("POINTS {} {}\n", from_.mesh.vertex_count(), floats ? "float" : "double");
-    const std::span<const double> numbers(
-        from_.mesh.points.empty() ? nullptr : from_.mesh.points.front().data(), 3 * from_.mesh.points.size());
-    if (floats && layout_.binary) {
-      write_binary<float>(numbers);
-    } else if (floats) {
-      write_lines(out_, numbers.size(), 3, [&](Text& line, std::string_view before, std::size_t i) {
-        line.number(before, static_cast<float>(numbers[i]));
-      });
+    if (floats) {
+      write_numbers<float>(from_.coordinates(), 3);
     } else {
-      write_numbers<double>(numbers, 3);
+      write_numbers<double>(from_.coordinates(), 3);
     }
     write_metadata({}, {}, kPoints);
   }
@@ -328,7 +315,7 @@ class LegacyWriter {
                                       [&](const auto& table) { return table.association == association; });
       if (own.empty() && !tables) continue;
       out_.print("{} {}\n", association == Association::vertices ? "POINT_DATA" : "CELL_DATA",
-                 association == Association::vertices ? from_.mesh.vertex_count() : from_.mesh.cell_count());
+                 item_count(from_.mesh, association));
       write_arrays(own, association);
       for (const auto& table : layout_.lookup_tables) {
         if (table.association == association)

@@ -21,8 +21,6 @@
 namespace meshorder::vtk {
 namespace {
 
-constexpr std::string_view kSetPrefix = "set:";
-
 /// Returns the members of a set from an array of marks or ranks; nullopt if the array has neither marks nor
 /// ranks.
 template <class Number>
@@ -45,45 +43,13 @@ std::optional<std::vector<Index>> members_of(const std::vector<Number>& marks) {
   return members;
 }
 
-template <class Number>
-std::vector<Number> filled(const DataArray& array, const std::vector<Number>& values, Index count) {
-  const auto width = static_cast<std::size_t>(array.components);
-  std::vector<Number> result(static_cast<std::size_t>(count) * width, missing_value<Number>());
-  for (std::size_t i = 0; i < array.indices.size(); ++i) {
-    const auto from = values.begin() + static_cast<Offset>(i * width);
-    std::copy(from, from + array.components, result.begin() + Offset{array.indices[i]} * array.components);
-  }
-  return result;
+/// Returns a name as a file can hold it: XML allows no control characters, and legacy files encode them.
+std::string held_name(const std::string& name, NamePlace place) {
+  if (name.empty()) return "array";
+  if (place == NamePlace::xml) return xml_text(name);
+  if (place == NamePlace::legacy) return name == "NULL_ARRAY" ? name + '_' : name;  // readers skip it
+  return name_in_hdf5(name);
 }
-
-/// Makes array names distinct, as VTK looks arrays up by name.
-class Names {
- public:
-  explicit Names(NamePlace place) : place_(place) {}
-
-  std::string unused(const std::string& wanted, Association association, Notes& notes) {
-    const std::string held = wanted.empty() ? "array" : held_there(wanted);
-    std::string name = numbers_[association].free_name(
-        held, [&](int k) { return held + "_" + std::to_string(k); },
-        [&](const std::string& free) { return taken_.emplace(association, free).second; });
-    if (name != wanted)
-      notes.push_back(
-          fmt::format("the array '{}' on {} is written as '{}'", wanted, to_string(association), name));
-    return name;
-  }
-
- private:
-  /// Returns a name as the file can hold it: XML allows no control characters, and legacy files encode them.
-  [[nodiscard]] std::string held_there(std::string name) const {
-    if (place_ == NamePlace::xml) return xml_text(name);
-    if (place_ == NamePlace::legacy) return name == "NULL_ARRAY" ? name + '_' : name;  // readers skip it
-    return name_in_hdf5(std::move(name));
-  }
-
-  NamePlace place_;
-  std::set<std::pair<Association, std::string>> taken_;
-  std::map<Association, NameNumbers> numbers_;
-};
 
 /// Returns the metadata of a mesh that came from VTK, or empty metadata; notes metadata of another format.
 const VtkMetadata& metadata_of(const Mesh& mesh, Notes& notes) {
@@ -98,10 +64,13 @@ const VtkMetadata& metadata_of(const Mesh& mesh, Notes& notes) {
 
 DataArray full_array(const DataArray& array, Index count) {
   DataArray copy{array.name, array.association, array.components, {}, {}, array.component_names};
-  copy.values = array.is_dense() && row_count(array) == count
-                    ? array.values
-                    : std::visit([&](const auto& values) { return Values(filled(array, values, count)); },
-                                 array.values);
+  if (array.is_dense() && row_count(array) == count) {
+    copy.values = array.values;
+  } else {
+    std::vector<Index> rows = rows_by_item(array, count);
+    rows.resize(static_cast<std::size_t>(count), -1);  // without indices, the array has no rows
+    copy.values = rows_of_values(array.values, array.components, rows);
+  }
   return copy;
 }
 
@@ -132,51 +101,43 @@ const ArrayFacts* find_facts(const VtkMetadata& metadata, std::optional<Associat
   return found == metadata.facts.end() ? nullptr : &found->second;
 }
 
-Values marks_of(const EntitySet& set, Index count) {
+DataArray marks_of(const EntitySet& set, Index count) {
+  DataArray result{.name = std::string(kSetPrefix) + set.name, .association = set.association};
   if (std::adjacent_find(set.members.begin(), set.members.end(), std::greater_equal<>()) ==
       set.members.end()) {
     std::vector<std::uint8_t> marks(count, 0);
     for (const Index member : set.members) marks[member] = 1;
-    return marks;
+    result.values = std::move(marks);
+    return result;
   }
   std::vector<std::int32_t> ranks(count, 0);
   std::int32_t rank = 0;
   for (const Index member : set.members) {
     if (ranks[member] == 0) ranks[member] = ++rank;
   }
-  return ranks;
+  result.values = std::move(ranks);
+  return result;
 }
 
 void add_points(std::vector<Point>& points, const Values& coordinates,
                 const std::function<InputError(std::size_t k)>& not_finite) {
   const std::size_t first = points.size();
   resize_large(points, first + size_of(coordinates) / 3);
-  std::visit(
-      [&](const auto& numbers) {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        if constexpr (std::is_arithmetic_v<Number>) {
-          const Number* number = numbers.data();
-          for (std::size_t p = first; p < points.size(); ++p) {
-            for (double& x : points[p]) {
-              x = static_cast<double>(*number++);
-              if (!std::isfinite(x)) throw not_finite(p - first);
-            }
-          }
-        }
-      },
-      coordinates);
+  with_numbers(coordinates, [&](const auto& numbers) {
+    const auto* number = numbers.data();
+    for (std::size_t p = first; p < points.size(); ++p) {
+      for (double& x : points[p]) {
+        x = static_cast<double>(*number++);
+        if (!std::isfinite(x)) throw not_finite(p - first);
+      }
+    }
+  });
 }
 
 void add_array(Mesh& mesh, DataArray array) {
   if (array.name == kCellTypes && find_array(mesh, kCellTypes, array.association) != nullptr) return;
   if (array.name.starts_with(kSetPrefix) && array.components == 1 && array.is_dense()) {
-    auto members = std::visit(
-        [](const auto& values) -> std::optional<std::vector<Index>> {
-          using Number = typename std::decay_t<decltype(values)>::value_type;
-          if constexpr (std::is_integral_v<Number>) return members_of(values);
-          return {};
-        },
-        array.values);
+    auto members = with_integers(array.values, [](const auto& values) { return members_of(values); });
     if (members) {
       mesh.sets.push_back({array.name.substr(kSetPrefix.size()), array.association, std::move(*members)});
       return;
@@ -212,13 +173,18 @@ void WriteContext::add_made(DataArray array) {
 }
 
 void WriteContext::collect_arrays(NamePlace place) {
-  Names names(place);
+  std::map<Association, DistinctNames> names;  // distinct, as VTK looks arrays up by name
+  const auto name_of = [&](const DataArray& array) {
+    std::string name = names[array.association].take(held_name(array.name, place));
+    note_renamed_array(array, name, notes);
+    return name;
+  };
   for (const DataArray& array : mesh.data) {
     // the types that the reader kept are written as cell types, any other array of that name as an array
     const auto* const kept = std::get_if<std::vector<std::uint8_t>>(&array.values);
     const bool holds_types = kept != nullptr && array.is_dense() && *kept == types;
     if (array.association == Association::cells && array.name == kCellTypes && holds_types) continue;
-    const std::string name = names.unused(array.name, array.association, notes);
+    const std::string name = name_of(array);
     if (array.is_dense() && name == array.name) {
       arrays.push_back(&array);
       continue;
@@ -229,20 +195,23 @@ void WriteContext::collect_arrays(NamePlace place) {
   }
 
   for (const EntitySet& set : mesh.sets) {
-    const std::string name = names.unused(std::string(kSetPrefix) + set.name, set.association, notes);
+    DataArray marks = marks_of(set, item_count(mesh, set.association));
+    marks.name = name_of(marks);
     if (!is_from_vtk(mesh)) {
       notes.push_back(fmt::format("the set '{}' of {} is written as the array '{}'", set.name,
-                                  to_string(set.association), name));
+                                  to_string(set.association), marks.name));
     }
-    add_made({name, set.association, 1, marks_of(set, item_count(mesh, set.association)), {}, {}});
+    add_made(std::move(marks));
   }
 
   const auto add_ids = [&](const std::vector<std::int64_t>& ids, const char* wanted,
                            Association association) {
     if (ids.empty()) return;
-    const std::string name = names.unused(wanted, association, notes);
-    notes.push_back(fmt::format("the ids of {} are written as the array '{}'", to_string(association), name));
-    add_made({name, association, 1, label_values(ids), {}, {}});
+    DataArray array{wanted, association, 1, label_values(ids), {}, {}};
+    array.name = name_of(array);
+    notes.push_back(
+        fmt::format("the ids of {} are written as the array '{}'", to_string(association), array.name));
+    add_made(std::move(array));
   };
   add_ids(mesh.vertex_ids, "vertex_id", Association::vertices);
   add_ids(mesh.cell_ids, "cell_id", Association::cells);

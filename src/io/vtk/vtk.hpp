@@ -11,14 +11,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -38,14 +37,8 @@ inline constexpr std::array<std::string_view, std::variant_size_v<Values>> kLega
 /// Converts integers to the type Target; returns an empty vector if the values are not integers.
 template <class Target>
 std::vector<Target> integers_of(const Values& values) {
-  return std::visit(
-      [](const auto& numbers) {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        std::vector<Target> result;
-        if constexpr (std::is_integral_v<Number>) result.assign(numbers.begin(), numbers.end());
-        return result;
-      },
-      values);
+  return with_integers(
+      values, [](const auto& numbers) { return std::vector<Target>(numbers.begin(), numbers.end()); });
 }
 
 // ---- metadata
@@ -233,9 +226,12 @@ Mesh read_vtu(const FilePath& path, Notes& notes);
 
 // ---- writing
 
-/// Returns the membership in a set as an array: 1 for each member if the members ascend, else the rank of
-/// each member (from 1), which keeps their order. `count` is the number of all vertices or cells.
-Values marks_of(const EntitySet& set, Index count);
+/// The array "set:NAME" has the membership in the set NAME: 1 for each member if the members ascend, else the
+/// rank of each member (from 1), which keeps their order.
+inline constexpr std::string_view kSetPrefix = "set:";
+
+/// Returns that array. `count` is the number of all vertices or cells.
+DataArray marks_of(const EntitySet& set, Index count);
 
 /// Returns an array with a row for each of `count` vertices or cells; rows that it lacked are NaN or 0.
 DataArray full_array(const DataArray& array, Index count);
@@ -266,6 +262,11 @@ struct WriteContext {
 
   /// Returns the array that is written with that role, null if there is none.
   [[nodiscard]] const ArrayRole* role(Association association, Role role) const;
+
+  /// Returns the coordinates of the points, three for each.
+  [[nodiscard]] std::span<const double> coordinates() const {
+    return {mesh.points.empty() ? nullptr : mesh.points.front().data(), 3 * mesh.points.size()};
+  }
 
   /// Returns whether the points were floats in their file and can still be written so without loss.
   [[nodiscard]] bool points_are_floats() const;

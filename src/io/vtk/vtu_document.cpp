@@ -77,10 +77,10 @@ std::string vtu_words(const std::vector<std::uint64_t>& values, const VtuEncodin
   return result;
 }
 
-const std::string* VtuElement::attribute(std::string_view wanted) const {
+const VtuAttribute* VtuElement::find(std::string_view wanted) const {
   const auto found = std::find_if(attributes.begin(), attributes.end(),
-                                  [&](const auto& attribute) { return attribute.first == wanted; });
-  return found == attributes.end() ? nullptr : &found->second;
+                                  [&](const VtuAttribute& attribute) { return attribute.name == wanted; });
+  return found == attributes.end() ? nullptr : &*found;
 }
 
 const VtuElement* VtuElement::child(std::string_view wanted) const {
@@ -111,15 +111,20 @@ const std::string& VtuDocument::required(const VtuElement& element, std::string_
   return *value;
 }
 
-std::int64_t VtuDocument::count(const VtuElement& element, std::string_view name) const {
+std::int64_t VtuDocument::count(const VtuElement& element, std::string_view name, std::int64_t most) const {
   const std::string& text = required(element, name);
   std::int64_t value = 0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc{} || end != text.data() + text.size() || value < 0 || value > kMaxIndex) {
+  if (code != std::errc{} || end != text.data() + text.size() || value < 0 || value > most) {
     throw error(element, fmt::format("{} is '{}'", name, text.substr(0, 40)),
-                "a whole number from 0 to 2147483647 is needed");
+                most == kMaxIndex ? "a whole number from 0 to 2147483647 is needed"
+                                  : "a whole number from 0 on is needed");
   }
   return value;
+}
+
+std::int64_t VtuDocument::components(const VtuElement& array) const {
+  return array.text_of("NumberOfComponents").empty() ? 1 : count(array, "NumberOfComponents");
 }
 
 /// Parses a start tag at `at`; returns its end.
@@ -161,7 +166,7 @@ std::size_t VtuDocument::parse_tag(std::size_t at, VtuElement& element, bool& cl
     if (end == std::string_view::npos) throw broken();
     const std::string_view value = all.substr(p + 1, end - p - 1);
     if (value.find('<') != std::string_view::npos) throw broken();
-    element.attributes.emplace_back(std::move(name), unescaped(value));
+    element.attributes.push_back({std::move(name), unescaped(value), p + 1, value.size()});
     p = end + 1;
   }
 }

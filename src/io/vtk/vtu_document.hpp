@@ -21,17 +21,30 @@ inline constexpr std::string_view kXmlBlanks = " \t\r\n";
 /// Returns the words that precede an array, such as its size, in the byte order of the file.
 std::string vtu_words(const std::vector<std::uint64_t>& values, const VtuEncoding& encoding);
 
+struct VtuAttribute {
+  std::string name;
+  std::string value;
+  // of the value in the file
+  std::size_t at = 0;
+  std::size_t size = 0;
+};
+
 /// An element of a .vtu file.
 struct VtuElement {
   std::string name;
-  std::vector<std::pair<std::string, std::string>> attributes;
+  std::vector<VtuAttribute> attributes;
   std::size_t at = 0;     ///< byte of its <
   std::size_t end = 0;    ///< byte after its end tag, or after its start tag while open
   std::string_view text;  ///< its first text that is not blank, up to the next child or comment
   std::vector<VtuElement> children;
 
+  /// Returns an attribute, or nullptr.
+  [[nodiscard]] const VtuAttribute* find(std::string_view wanted) const;
   /// Returns the value of an attribute, or nullptr.
-  [[nodiscard]] const std::string* attribute(std::string_view wanted) const;
+  [[nodiscard]] const std::string* attribute(std::string_view wanted) const {
+    const VtuAttribute* const found = find(wanted);
+    return found == nullptr ? nullptr : &found->value;
+  }
   /// Returns the value of an attribute; empty if it is missing.
   [[nodiscard]] std::string_view text_of(std::string_view wanted) const {
     const std::string* const value = attribute(wanted);
@@ -74,8 +87,11 @@ class VtuDocument {
 
   /// Returns a required attribute.
   [[nodiscard]] const std::string& required(const VtuElement& element, std::string_view name) const;
-  /// Returns a count in an attribute, 0 … kMaxIndex.
-  [[nodiscard]] std::int64_t count(const VtuElement& element, std::string_view name) const;
+  /// Returns a count in an attribute, 0 … `most`, which is kMaxIndex or the highest number of 64 bits.
+  [[nodiscard]] std::int64_t count(const VtuElement& element, std::string_view name,
+                                   std::int64_t most = kMaxIndex) const;
+  /// Returns how many numbers a row of an array has.
+  [[nodiscard]] std::int64_t components(const VtuElement& array) const;
 
   /// Throws Error if allocating `bytes` for an array would exceed the limit on memory.
   void claim(const VtuElement& array, std::uint64_t bytes) const;

@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 #include <string>
@@ -161,8 +160,8 @@ class VtuReader {
       throw file_->error(element != nullptr ? *element : piece, "<Points> with one array is missing",
                          "each piece has its points");
     const VtuElement& array = *std::find_if(element->children.begin(), element->children.end(), is_array);
-    if (components_of(array) != 3)
-      throw file_->error(array, "the points have " + std::to_string(components_of(array)) + " components",
+    if (file_->components(array) != 3)
+      throw file_->error(array, "the points have " + std::to_string(file_->components(array)) + " components",
                          "3 are needed");
     const Values values = file_->values(array, 3 * count);
     if (mesh_.points.empty()) {
@@ -177,11 +176,6 @@ class VtuReader {
                           fmt::format("point {} (counted from 0) has a coordinate that is not finite", p),
                           "finite numbers are needed");
     });
-  }
-
-  [[nodiscard]] std::int64_t components_of(const VtuElement& array) const {
-    const std::string* const given = array.attribute("NumberOfComponents");
-    return given == nullptr || given->empty() ? 1 : file_->count(array, "NumberOfComponents");
   }
 
   /// Returns the array of that name, null if there is none.
@@ -376,27 +370,22 @@ class VtuReader {
   template <class Number, class Checked>
   void append_integers(const VtuElement& array, std::int64_t count, std::vector<Number>& target,
                        const Checked& checked) {
-    if (components_of(array) != 1)
+    if (file_->components(array) != 1)
       throw file_->error(array, "the array has several components", "1 is needed");
     Values values = file_->values(array, count);
-    std::visit(
-        [&](auto& numbers) {
-          using Stored = typename std::decay_t<decltype(numbers)>::value_type;
-          if constexpr (std::is_integral_v<Stored>) {
-            const std::span<const Stored> from = numbers;
-            const std::size_t first = target.size();
-            if constexpr (std::is_same_v<Stored, Number>) {
-              if (target.empty()) target.swap(numbers);
-            }
-            resize_large(target, first + from.size());
-            std::int64_t i = 0;
-            std::transform(from.begin(), from.end(), target.begin() + static_cast<std::ptrdiff_t>(first),
-                           [&](Stored number) { return checked(i++, number); });
-          } else {
-            throw file_->error(array, "the array does not hold integers", "Int32 or Int64 is usual");
-          }
-        },
-        values);
+    if (!are_integers(values))
+      throw file_->error(array, "the array does not hold integers", "Int32 or Int64 is usual");
+    with_integers(values, [&]<class Stored>(std::vector<Stored>& numbers) {
+      const std::span<const Stored> from = numbers;
+      const std::size_t first = target.size();
+      if constexpr (std::is_same_v<Stored, Number>) {
+        if (target.empty()) target.swap(numbers);
+      }
+      resize_large(target, first + from.size());
+      std::int64_t i = 0;
+      std::transform(from.begin(), from.end(), target.begin() + static_cast<std::ptrdiff_t>(first),
+                     [&](Stored number) { return checked(i++, number); });
+    });
   }
 
   /// Refuses an array of any step but the first, and notes that the time of an only step is left out.
@@ -416,7 +405,7 @@ class VtuReader {
     DataArray array;
     array.name = file_->required(element, "Name");
     array.association = association.value_or(Association::vertices);
-    const std::int64_t components = components_of(element);
+    const std::int64_t components = file_->components(element);
     if (components < 1) throw file_->error(element, "the array has no components", "at least 1 is needed");
     array.components = static_cast<Index>(components);
     array.values = file_->values(element, tuples * components);

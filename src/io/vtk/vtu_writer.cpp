@@ -50,10 +50,10 @@ struct Array {
   std::uint64_t offset = 0;
 };
 
-/// A part of the file with arrays: its opening and closing tags.
+/// An element of the file with arrays.
 struct ArraySection {
-  std::string begin;
-  std::string end;
+  std::string_view name;
+  std::string attributes;
   std::vector<Array> arrays;
 };
 
@@ -107,21 +107,18 @@ class VtuWriter {
 
   void collect() {
     if (!from_.metadata.fields.empty()) {
-      ArraySection& fields =
-          sections_.emplace_back(ArraySection{"    <FieldData>\n", "    </FieldData>\n", {}});
+      ArraySection& fields = sections_.emplace_back(ArraySection{"FieldData", "", {}});
       for (const DataArray& field : from_.metadata.fields) fields.arrays.push_back(array_of(field, {}));
     }
     collect_data(Association::vertices);
     collect_data(Association::cells);
-    sections_.push_back({"      <Points>\n", "      </Points>\n", {points()}});
-    sections_.push_back({"      <Cells>\n", "      </Cells>\n", cells()});
+    sections_.push_back({"Points", "", {points()}});
+    sections_.push_back({"Cells", "", cells()});
   }
 
   void collect_data(Association association) {
-    ArraySection section;
-    const std::string_view name = association == Association::vertices ? "PointData" : "CellData";
-    section.begin = fmt::format("      <{}{}>\n", name, roles(association));
-    section.end = fmt::format("      </{}>\n", name);
+    ArraySection section{
+        association == Association::vertices ? "PointData" : "CellData", roles(association), {}};
     for (const DataArray* array : from_.arrays) {
       if (array->association == association) section.arrays.push_back(array_of(*array, association));
     }
@@ -174,39 +171,30 @@ class VtuWriter {
   }
 
   Array points() {
-    Array result;
-    const bool floats = from_.points_are_floats();
-    const std::span<const double> numbers(
-        from_.mesh.points.empty() ? nullptr : from_.mesh.points.front().data(), 3 * from_.mesh.points.size());
-    result.numbers = numbers;
-    if (floats) {
-      for (const double x : numbers) float_points_.push_back(static_cast<float>(x));
-      result.numbers = std::span<const float>(float_points_);
+    Numbers numbers = from_.coordinates();
+    if (from_.points_are_floats()) {
+      float_points_.assign(from_.coordinates().begin(), from_.coordinates().end());
+      numbers = std::span<const float>(float_points_);
     }
-    result.tag = fmt::format("<DataArray type=\"{}\" Name=\"Points\" NumberOfComponents=\"3\"",
-                             floats ? "Float32" : "Float64");
+    Array result = named("Points", numbers);
+    result.tag += " NumberOfComponents=\"3\"";
     return result;
   }
 
   /// Returns the vertices, ends and types of the cells; VTK requires one number type for the first two.
   std::vector<Array> cells() {
     const Cells& cells = from_.cells();
-    const bool narrow = cells.offsets.back() <= kMaxIndex;
-    std::vector<Array> result(3);
-    if (narrow) {
+    Numbers vertices = std::span<const std::int32_t>(cells.vertices);
+    Numbers ends = std::span<const std::int64_t>(cells.offsets).subspan(1);
+    if (cells.offsets.back() <= kMaxIndex) {
       ends_.assign(cells.offsets.begin() + 1, cells.offsets.end());
-      result[0].numbers = std::span<const std::int32_t>(cells.vertices);
-      result[1].numbers = std::span<const std::int32_t>(ends_);
+      ends = std::span<const std::int32_t>(ends_);
     } else {
       wide_vertices_.assign(cells.vertices.begin(), cells.vertices.end());
-      result[0].numbers = std::span<const std::int64_t>(wide_vertices_);
-      result[1].numbers = std::span<const std::int64_t>(cells.offsets).subspan(1);
+      vertices = std::span<const std::int64_t>(wide_vertices_);
     }
-    result[2].numbers = std::span<const std::uint8_t>(from_.types);
-    const char* const type = narrow ? "Int32" : "Int64";
-    result[0].tag = fmt::format("<DataArray type=\"{}\" Name=\"connectivity\"", type);
-    result[1].tag = fmt::format("<DataArray type=\"{}\" Name=\"offsets\"", type);
-    result[2].tag = "<DataArray type=\"UInt8\" Name=\"types\"";
+    std::vector<Array> result{named("connectivity", vertices), named("offsets", ends),
+                              named("types", std::span<const std::uint8_t>(from_.types))};
     if (from_.metadata.polyhedra.are_by_face) {
       add_polyhedra_by_face(result);
     } else if (!from_.metadata.polyhedra.empty()) {
@@ -215,9 +203,9 @@ class VtuWriter {
     return result;
   }
 
-  static Array integers(std::string_view name, std::span<const std::int64_t> numbers) {
+  static Array named(std::string_view name, Numbers numbers) {
     Array array;
-    array.tag = fmt::format("<DataArray type=\"Int64\" Name=\"{}\"", name);
+    array.tag = fmt::format("<DataArray type=\"{}\" Name=\"{}\"", kXmlTypeNames[numbers.index()], name);
     array.numbers = numbers;
     return array;
   }
@@ -228,10 +216,8 @@ class VtuWriter {
     for (Index c = 0; c < from_.mesh.cell_count(); ++c) {
       face_numbers_[1].push_back(from_.types[c] == kPolyhedron ? polyhedra.starts[c + 1] : -1);
     }
-    Array& faces = cells.emplace_back();
-    faces.tag = "<DataArray type=\"Int32\" Name=\"faces\"";
-    faces.numbers = std::span<const std::int32_t>(polyhedra.numbers);
-    cells.push_back(integers("faceoffsets", face_numbers_[1]));
+    cells.push_back(named("faces", std::span<const std::int32_t>(polyhedra.numbers)));
+    cells.push_back(named("faceoffsets", std::span<const std::int64_t>(face_numbers_[1])));
   }
 
   /// Adds the faces of polyhedra as VTK writes them since 9.4; polyhedra do not share faces.
@@ -247,10 +233,10 @@ class VtuWriter {
       for_faces(from_.metadata.polyhedra[c], add);
       face_ends.push_back(std::ssize(faces));
     }
-    cells.push_back(integers("face_connectivity", corners));
-    cells.push_back(integers("face_offsets", corner_ends));
-    cells.push_back(integers("polyhedron_to_faces", faces));
-    cells.push_back(integers("polyhedron_offsets", face_ends));
+    constexpr std::array kNames{"face_connectivity", "face_offsets", "polyhedron_to_faces",
+                                "polyhedron_offsets"};
+    for (std::size_t k = 0; k < kNames.size(); ++k)
+      cells.push_back(named(kNames[k], std::span<const std::int64_t>(face_numbers_[k])));
   }
 
   // ---- bytes
@@ -386,16 +372,14 @@ class VtuWriter {
     if (encoding_.compressor != Compressor::none)
       out_.print(" compressor=\"{}\"", kCompressors[static_cast<std::size_t>(encoding_.compressor)]);
     out_.write(">\n  <UnstructuredGrid>\n");
-    if (from_.metadata.fields.empty()) begin_piece();
-  }
-
-  void begin_piece() {
-    out_.print("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", from_.mesh.vertex_count(),
-               from_.mesh.cell_count());
   }
 
   void write_section(const ArraySection& section) {
-    out_.write(section.begin);
+    if (section.name == "PointData")
+      out_.print("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", from_.mesh.vertex_count(),
+                 from_.mesh.cell_count());
+    const std::string_view indent = section.name == "FieldData" ? "    " : "      ";
+    out_.print("{}<{}{}>\n", indent, section.name, section.attributes);
     for (const Array& array : section.arrays) {
       out_.print("        {} format=\"", array.tag);
       if (appended()) {
@@ -416,8 +400,7 @@ class VtuWriter {
       out_.print("{}        </{}>\n", array.information,
                  array.tag.starts_with("<Array") ? "Array" : "DataArray");
     }
-    out_.write(section.end);
-    if (section.begin.find("<FieldData") != std::string::npos) begin_piece();
+    out_.print("{}</{}>\n", indent, section.name);
   }
 
   void write_appended() {

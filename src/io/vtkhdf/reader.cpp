@@ -7,16 +7,15 @@
 #include "io/hdf5/session.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtkhdf/vtkhdf.hpp"
+#include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <optional>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -231,21 +230,15 @@ class VtkHdfReader {
   void for_integers(const std::string& path, std::int64_t all, std::vector<Target>& target,
                     const Count& count, const Take& take) const {
     const Values values = read_rows(path, all, 1);
+    if (!are_integers(values)) throw error(path, "does not hold whole numbers");
     reserve_large(target, static_cast<std::size_t>(all));
-    std::visit(
-        [&](const auto& numbers) {
-          using Number = typename std::decay_t<decltype(numbers)>::value_type;
-          if constexpr (std::is_integral_v<Number>) {
-            std::size_t at = 0;
-            for (const Partition& partition : partitions_) {
-              const std::int64_t n = count(partition);
-              for (std::int64_t i = 0; i < n; ++i) take(partition, i, numbers[at++]);
-            }
-          } else {
-            throw error(path, "does not hold whole numbers");
-          }
-        },
-        values);
+    with_integers(values, [&](const auto& numbers) {
+      std::size_t at = 0;
+      for (const Partition& partition : partitions_) {
+        const std::int64_t n = count(partition);
+        for (std::int64_t i = 0; i < n; ++i) take(partition, i, numbers[at++]);
+      }
+    });
   }
 
   void read_cells() {
@@ -364,8 +357,7 @@ class VtkHdfReader {
       if (!field) continue;
       const std::int64_t components =
           file_.integer_attribute(path_in(group, name), std::string(kComponents)).value_or(field->components);
-      const std::int64_t count =
-          std::visit([](const auto& values) { return std::ssize(values); }, field->values);
+      const auto count = static_cast<std::int64_t>(size_of(field->values));
       if (components < 1 || components > kMaxIndex || count % components != 0) {
         throw error(path_in(group, name), fmt::format("has {} values in rows of {}", count, components));
       }

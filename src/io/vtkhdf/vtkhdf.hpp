@@ -11,7 +11,6 @@
 #include "io/format.hpp"
 #include "io/vtk/vtk.hpp"
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>

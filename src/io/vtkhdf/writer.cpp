@@ -10,13 +10,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <fstream>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <utility>
 #include <variant>
@@ -53,13 +51,9 @@ void write_field(hdf5::File& file, const DataArray& field, const std::string& pa
 
 /// Writes all fields, each under a name that no other field has.
 void write_fields(hdf5::File& file, const std::vector<DataArray>& fields, Notes& notes) {
-  std::set<std::string> taken;
-  NameNumbers numbers;
+  DistinctNames names;
   for (const DataArray& field : fields) {
-    const std::string held = vtk::name_in_hdf5(field.name);
-    const std::string name = numbers.free_name(
-        held, [&](int k) { return fmt::format("{}_{}", held, k); },
-        [&](const std::string& free) { return taken.insert(free).second; });
+    const std::string name = names.take(vtk::name_in_hdf5(field.name));
     if (name != field.name)
       notes.push_back(fmt::format("the field '{}' is written as '{}'", field.name, name));
     write_field(file, field, fmt::format("{}/FieldData/{}", kRoot, name));
@@ -106,10 +100,8 @@ class VtkHdfWriter {
 
   void write_points() {
     const std::string path = fmt::format("{}/Points", kRoot);
-    const std::vector<Point>& points = from_.mesh.points;
-    const std::span<const double> numbers(points.empty() ? nullptr : points.front().data(),
-                                          3 * points.size());
-    const std::vector<std::uint64_t> shape{points.size(), 3};
+    const std::span<const double> numbers = from_.coordinates();
+    const std::vector<std::uint64_t> shape{numbers.size() / 3, 3};
     if (from_.points_are_floats()) {
       file_.write(path, std::vector<float>(numbers.begin(), numbers.end()), shape);
     } else {
@@ -139,23 +131,6 @@ class VtkHdfWriter {
 /// Names of the datasets of a mesh, in the order of FilePart::Role.
 constexpr std::array<std::string_view, 4> kDatasets{"Points", "Types", "Offsets", "Connectivity"};
 
-/// Returns the path of an array on points or cells, under a name that no other array has. `held` maps the
-/// names that are taken to their arrays.
-std::string place_array(Association association, const std::string& array,
-                        std::map<std::pair<Association, std::string>, std::string>& held,
-                        std::map<Association, NameNumbers>& numbers, Notes& notes) {
-  const std::string wanted = vtk::name_in_hdf5(array);
-  const std::string name = numbers[association].free_name(
-      wanted, [&](int k) { return fmt::format("{}_{}", wanted, k); },
-      [&](const std::string& free) {
-        return held.try_emplace({association, free}, array).second;
-      });
-  if (name != array)
-    notes.push_back(
-        fmt::format("the array '{}' on {} is written as '{}'", array, to_string(association), name));
-  return data_group(association) + "/" + name;
-}
-
 }  // namespace
 
 void note_lacking(const vtk::WriteContext& from, Notes& notes) {
@@ -179,13 +154,19 @@ void write_without_values(const std::filesystem::path& path, const std::string& 
   std::ofstream(path, std::ios::binary).write(bytes.data(), std::ssize(bytes));
   hdf5::File file = hdf5::File::change(path, name);
   write_counts(file, partitions);
-  std::map<std::pair<Association, std::string>, std::string> held;  // taken names and their arrays
-  std::map<Association, NameNumbers> numbers;
+  std::map<Association, DistinctNames> names;
+  std::map<std::pair<Association, std::string>, std::string> held;  // arrays by their names in the file
   std::vector<std::string> paths;
   for (const FilePart& part : layout.parts) {
-    paths.push_back(part.role == FilePart::Role::data
-                        ? place_array(part.association, layout.names[part.number], held, numbers, notes)
-                        : fmt::format("{}/{}", kRoot, kDatasets[static_cast<std::size_t>(part.role)]));
+    if (part.role == FilePart::Role::data) {
+      const DataArray array{.name = layout.names[part.number], .association = part.association};
+      const std::string own = names[array.association].take(vtk::name_in_hdf5(array.name));
+      note_renamed_array(array, own, notes);
+      held.try_emplace({array.association, own}, array.name);
+      paths.push_back(data_group(array.association) + "/" + own);
+    } else {
+      paths.push_back(fmt::format("{}/{}", kRoot, kDatasets[static_cast<std::size_t>(part.role)]));
+    }
     std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(part.rows)};
     if (part.components != 1) shape.push_back(static_cast<std::uint64_t>(part.components));
     file.make_room(paths.back(), part.type, shape);

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
+#include "io/names.hpp"
 #include "io/unsupported.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/xdmf/writer.hpp"
@@ -11,11 +12,6 @@
 #include <string_view>
 
 namespace meshorder::xdmf {
-namespace {
-
-constexpr std::string_view kSetName = "set:";
-
-}  // namespace
 
 std::string attribute_type(Index components) {
   switch (components) {
@@ -34,32 +30,26 @@ std::string attribute_type(Index components) {
 }
 
 std::optional<DataArray> Writer::marks_named(const std::string& name, Association association) const {
-  if (!name.starts_with(kSetName)) return {};
-  const EntitySet* const set = parts_.set(std::string_view(name).substr(kSetName.size()), association);
-  return set != nullptr ? std::optional(marks_of(*set)) : std::nullopt;
-}
-
-DataArray Writer::marks_of(const EntitySet& set) const {
-  const Index count = set.association == Association::vertices ? mesh_.vertex_count() : mesh_.cell_count();
-  return {.name = std::string(kSetName) + set.name,
-          .association = set.association,
-          .values = vtk::marks_of(set, count)};
+  if (!name.starts_with(vtk::kSetPrefix)) return {};
+  const EntitySet* const set = parts_.set(std::string_view(name).substr(vtk::kSetPrefix.size()), association);
+  return set != nullptr ? std::optional(vtk::marks_of(*set, item_count(mesh_, association))) : std::nullopt;
 }
 
 void Writer::add_others() {
+  std::set<std::pair<Association, std::string>> covered;
   for (const Field& field : layout_.fields) {
-    if (field.role == Field::Role::data) names_.emplace(field.association, field.name);
+    if (field.role == Field::Role::data && covered.emplace(field.association, field.name).second)
+      (void)names_[field.association].take(field.name);
   }
-  const std::set<std::pair<Association, std::string>> covered = names_;
   const std::set<std::pair<Association, std::string>> placed = placed_sets();
   for (const DataArray& array : mesh_.data) {
     if (!covered.contains({array.association, array.name}) || are_texts(array.values)) add_array(array);
   }
   for (const EntitySet& set : mesh_.sets) {
     if (placed.contains({set.association, set.name}) ||
-        covered.contains({set.association, std::string(kSetName) + set.name}))
+        covered.contains({set.association, std::string(vtk::kSetPrefix) + set.name}))
       continue;
-    const DataArray marks = marks_of(set);
+    const DataArray marks = vtk::marks_of(set, item_count(mesh_, set.association));
     notes_.push_back(fmt::format("the set '{}' of {} is written as the array '{}'", set.name,
                                  to_string(set.association), marks.name));
     add_array(marks);
@@ -87,15 +77,8 @@ void Writer::add_ids(const std::vector<std::int64_t>& ids, const char* name, Ass
 }
 
 std::string Writer::unused_name(const DataArray& array) {
-  const std::string wanted = array.name.empty() ? "array" : array.name;
-  const std::string clean = meshorder::xml_text(wanted);
-  std::string name = numbers_[array.association].free_name(
-      clean, [&](int k) { return fmt::format("{}_{}", clean, k); },
-      [&](const std::string& free) { return names_.emplace(array.association, free).second; });
-  if (name != array.name) {
-    notes_.push_back(fmt::format("the array '{}' on {} is written as '{}'", array.name,
-                                 to_string(array.association), name));
-  }
+  std::string name = names_[array.association].take(array.name.empty() ? "array" : xml_text(array.name));
+  note_renamed_array(array, name, notes_);
   return name;
 }
 

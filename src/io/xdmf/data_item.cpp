@@ -6,8 +6,9 @@
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/format.hpp"
-#include "io/stream/digits.hpp"
+#include "io/stream/byte_order.hpp"
 #include "io/stream/read_limits.hpp"
+#include "io/stream/regular_text.hpp"
 #include "io/xdmf/raw.hpp"
 
 #include <fmt/format.h>
@@ -26,7 +27,6 @@ namespace {
 using Format = DataPlace::Format;
 
 constexpr std::string_view kBlanksOfXml = " \t\r\n";
-constexpr bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; }
 
 /// Number types by the names that VTK's readers accept: one byte is Char or UChar to them, not Int.
 struct NumberType {
@@ -69,25 +69,6 @@ class ElementText {
   std::string_view first_;
   std::string joined_;  // the pieces joined, if there are several
 };
-
-/// Reads the number at the beginning of a text, up to a blank or the end; returns where it ends, or null if
-/// it is not a number of the type.
-template <class Number>
-const char* number_in(const char* p, const char* end, Number& number) {
-  if constexpr (std::is_integral_v<Number>) {
-    if (end - p > 8) {
-      const Digits digits = leading_digits(p);
-      const char* const behind = p + digits.count;
-      if (digits.count > 0 && digits.count < 8 && is_blank(*behind) && std::in_range<Number>(digits.number)) {
-        number = static_cast<Number>(digits.number);
-        return behind;
-      }
-    }
-  }
-  const char* const begin = *p == '+' ? p + 1 : p;
-  const auto [next, code] = std::from_chars(begin, end, number);
-  return code == std::errc{} && (next == end || is_blank(*next)) ? next : nullptr;
-}
 
 }  // namespace
 
@@ -264,18 +245,13 @@ std::vector<Index> DataReader::read_indices(const DataPlace& place) {
   if (place.format == Format::hdf) return file(item, place.file).read_indices(place.dataset);
   const Values values = read(place);
   std::vector<Index> indices;
-  std::visit(
-      [&](const auto& numbers) {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        if constexpr (std::is_integral_v<Number>) {
-          reserve_large(indices, numbers.size());
-          for (const Number number : numbers) {
-            const Index limit = std::cmp_less(number, 0) ? std::numeric_limits<Index>::min() : kMaxIndex;
-            indices.push_back(std::in_range<Index>(number) ? static_cast<Index>(number) : limit);
-          }
-        }
-      },
-      values);
+  with_integers(values, [&](const auto& numbers) {
+    reserve_large(indices, numbers.size());
+    for (const auto number : numbers) {
+      const Index limit = std::cmp_less(number, 0) ? std::numeric_limits<Index>::min() : kMaxIndex;
+      indices.push_back(std::in_range<Index>(number) ? static_cast<Index>(number) : limit);
+    }
+  });
   return indices;
 }
 
@@ -286,36 +262,30 @@ void DataReader::claim(pugi::xml_node item, std::uint64_t bytes) const {
 
 Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const {
   const ElementText whole_text(item);
-  const std::string_view text = whole_text.view();
+  std::string_view text = whole_text.view();
   const std::uint64_t count = place.count();
-  return values_of_type(place.alternative, [&](auto& numbers) {
-    using Number = typename std::decay_t<decltype(numbers)>::value_type;
-    if constexpr (std::is_arithmetic_v<Number>) {
-      const std::uint64_t most = std::min<std::uint64_t>(count, text.size() / 2 + 1);
-      claim(item, bytes_for(most, sizeof(Number)));
-      reserve_large(numbers, most);
-      const char* p = text.data();
-      const char* const end = p + text.size();
-      while (true) {
-        while (p != end && is_blank(*p)) ++p;
-        if (p == end) break;
-        Number number{};
-        const char* const next = number_in(p, end, number);
-        if (next == nullptr) {
-          const std::string_view word(p, static_cast<std::size_t>(end - p));
-          throw document_.error(
-              item,
-              fmt::format("'{}' is not a number of the type",
-                          word.substr(0, std::min<std::size_t>(word.find_first_of(kBlanksOfXml), 40))),
-              fmt::format("value {} (counted from 0) is wrong or out of range", numbers.size()));
-        }
-        numbers.push_back(number);
-        p = next;
+  return numbers_of_type(place.alternative, [&]<class Number>(std::vector<Number>& numbers) {
+    const std::uint64_t most = std::min<std::uint64_t>(count, text.size() / 2 + 1);
+    claim(item, bytes_for(most, sizeof(Number)));
+    resize_large(numbers, most);
+    const RegularNumbers regular = read_regular_numbers<Number>(text, numbers);
+    numbers.resize(regular.count);
+    text.remove_prefix(regular.bytes);
+    for (std::string_view word = next_word(text, kBlanksOfXml); !word.empty();
+         word = next_word(text, kBlanksOfXml)) {
+      Number number{};
+      const char* const end = word.data() + word.size();
+      const auto [next, code] = std::from_chars(word.data() + (word.front() == '+' ? 1 : 0), end, number);
+      if (code != std::errc{} || next != end) {
+        throw document_.error(
+            item, fmt::format("'{}' is not a number of the type", word.substr(0, 40)),
+            fmt::format("value {} (counted from 0) is wrong or out of range", numbers.size()));
       }
-      if (numbers.size() != count) {
-        throw document_.error(item, fmt::format("the DataItem has {} values", numbers.size()),
-                              fmt::format("its Dimensions say {}", count));
-      }
+      numbers.push_back(number);
+    }
+    if (numbers.size() != count) {
+      throw document_.error(item, fmt::format("the DataItem has {} values", numbers.size()),
+                            fmt::format("its Dimensions say {}", count));
     }
   });
 }
@@ -348,19 +318,14 @@ Values DataReader::read_binary(const DataPlace& place, pugi::xml_node item) {
         item, fmt::format("the file '{}' has {} bytes", place.file, bytes.size()),
         fmt::format("{} values of {} bytes from byte {} on are needed", count, size, place.seek));
   }
-  return values_of_type(place.alternative, [&](auto& numbers) {
-    using Number = typename std::decay_t<decltype(numbers)>::value_type;
-    if constexpr (std::is_arithmetic_v<Number>) {
-      claim(item, bytes_for(count, sizeof(Number)));
-      numbers.resize(count);
-      if (count > 0) std::memcpy(numbers.data(), bytes.data() + place.seek, count * sizeof(Number));
-      if (place.order != std::endian::native) {
-        auto* const raw = reinterpret_cast<char*>(numbers.data());
-        for (std::size_t i = 0; i < count; ++i)
-          std::reverse(raw + i * sizeof(Number), raw + (i + 1) * sizeof(Number));
-      }
-      check_sum(place, item, numbers);
+  return numbers_of_type(place.alternative, [&]<class Number>(std::vector<Number>& numbers) {
+    claim(item, bytes_for(count, sizeof(Number)));
+    numbers.resize(count);
+    if (count > 0) std::memcpy(numbers.data(), bytes.data() + place.seek, count * sizeof(Number));
+    if (place.order != std::endian::native) {
+      for (Number& number : numbers) number = swapped_bytes(number);
     }
+    check_sum(place, item, numbers);
   });
 }
 

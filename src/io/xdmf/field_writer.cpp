@@ -73,16 +73,14 @@ void Writer::write_points(const Field& field) {
   const std::size_t count = mesh_.points.size() * width;
   constexpr std::size_t kFloatAlternative = 1;
   const bool floats = field.place.alternative == kFloatAlternative && are_float_points(mesh_.points);
-  const Values values = values_of_type(floats ? kFloatAlternative : 0, [&](auto& numbers) {
-    using Number = typename std::decay_t<decltype(numbers)>::value_type;
-    if constexpr (std::is_floating_point_v<Number>) {
-      numbers.resize(count);
-      for (std::size_t v = 0; v < mesh_.points.size(); ++v) {
-        for (std::size_t k = 0; k < width; ++k)
-          numbers[v * width + k] = static_cast<Number>(coordinate(v, k));
-      }
-    }
-  });
+  const Values values =
+      numbers_of_type(floats ? kFloatAlternative : 0, [&]<class Number>(std::vector<Number>& numbers) {
+        numbers.resize(count);
+        for (std::size_t v = 0; v < mesh_.points.size(); ++v) {
+          for (std::size_t k = 0; k < width; ++k)
+            numbers[v * width + k] = static_cast<Number>(coordinate(v, k));
+        }
+      });
   put(field.place, values, width);
 }
 
@@ -242,32 +240,21 @@ std::vector<Index> Writer::places_in(const std::vector<Index>& rows) const {
 
 std::optional<Values> Writer::values_of(const DataArray& array, Association association, int part) {
   const bool on_vertices = association == Association::vertices;
-  const Index count = on_vertices ? mesh_.vertex_count() : mesh_.cell_count();
-  std::vector<Index> all;
-  if (on_vertices && array.is_dense()) return {};
-  if (on_vertices) all = index_range(0, count);
-  const std::vector<Index>& rows = on_vertices ? all : rows_[static_cast<std::size_t>(part)];
-  if (array.is_dense() && is_identity(rows, count)) return {};
+  const Index count = item_count(mesh_, association);
   const std::vector<Index> row_of = rows_by_item(array, count);
-  const auto width = static_cast<std::size_t>(array.components);
-  bool filled = false;
-  Values result = values_of_type(array.values.index(), [&](auto& numbers) {
-    using Number = typename std::decay_t<decltype(numbers)>::value_type;
-    const auto& values = std::get<std::decay_t<decltype(numbers)>>(array.values);
-    numbers.reserve(rows.size() * width);
-    for (const Index item : rows) {
-      const Index row = row_of.empty() ? item : row_of[static_cast<std::size_t>(item)];
-      if (row < 0) {
-        numbers.insert(numbers.end(), width, missing_value<Number>());
-        filled = true;
-      } else {
-        const auto first = values.begin() + static_cast<Offset>(static_cast<std::size_t>(row) * width);
-        numbers.insert(numbers.end(), first, first + static_cast<Offset>(width));
-      }
+  std::vector<Index> rows_of_cells;
+  if (!on_vertices) {
+    const std::vector<Index>& cells = rows_[static_cast<std::size_t>(part)];
+    if (array.is_dense() && !is_identity(cells, count))
+      return rows_of_values(array.values, array.components, cells);
+    if (!array.is_dense()) {
+      for (const Index c : cells) rows_of_cells.push_back(row_of[static_cast<std::size_t>(c)]);
     }
-  });
-  if (filled) note_filled_once(array);
-  return result;
+  }
+  if (array.is_dense()) return {};
+  const std::vector<Index>& rows = on_vertices ? row_of : rows_of_cells;
+  if (std::find(rows.begin(), rows.end(), -1) != rows.end()) note_filled_once(array);
+  return rows_of_values(array.values, array.components, rows);
 }
 
 void Writer::note_filled_once(const DataArray& array) {

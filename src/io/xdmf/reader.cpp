@@ -325,25 +325,18 @@ class XdmfReader {
                                       "at most 2147483647 are possible");
       }
       resize_large(points, count);
-      std::visit(
-          [&](const auto& numbers) {
-            using Number = typename std::decay_t<decltype(numbers)>::value_type;
-            if constexpr (std::is_arithmetic_v<Number>) {
-              for (std::size_t p = 0; p < count; ++p) {
-                for (std::size_t k = 0; k < width; ++k) {
-                  const auto x = static_cast<double>(numbers[p * width + k]);
-                  if (!std::isfinite(x)) {
-                    throw reading_.document.error(
-                        items[i],
-                        fmt::format("point {} (counted from 0) has a coordinate that is not finite", p),
-                        "finite numbers are needed");
-                  }
-                  points[p][separate ? i : k] = x;
-                }
-              }
-            }
-          },
-          values);
+      with_numbers(values, [&](const auto& numbers) {
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+          const auto x = static_cast<double>(numbers[k]);
+          if (!std::isfinite(x)) {
+            throw reading_.document.error(
+                items[i],
+                fmt::format("point {} (counted from 0) has a coordinate that is not finite", k / width),
+                "finite numbers are needed");
+          }
+          points[k / width][separate ? i : k % width] = x;
+        }
+      });
       fields.push_back(std::move(field));
     }
     return points;

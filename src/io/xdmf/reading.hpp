@@ -72,32 +72,12 @@ class TopologyReader {
   int read(const GridElement& grid, pugi::xml_node topology);
 
  private:
-  /// The cells of one Topology as the file has them.
-  struct Piece {
-    vtk::FileCells cells;
-    int base = 0;
-  };
-
-  [[nodiscard]] pugi::xml_node item_of_topology(pugi::xml_node topology) const;
-  Piece piece_of(pugi::xml_node topology, pugi::xml_node item, const DataPlace& place, int base);
-  /// Returns the number of cells that a Topology announces, −1 if it announces none.
-  [[nodiscard]] std::int64_t claimed_cells(pugi::xml_node topology) const;
-  /// Appends the cells of a mixed Topology; `counted`: cells of Polyvertex have a count of points, too.
-  /// Returns false if the data are faulty, and sets `fault_at_` to the place of the fault.
-  bool read_mixed(const std::vector<Index>& numbers, std::int64_t claimed, bool counted,
-                  vtk::FileCells& cells);
-  void check_vertices(pugi::xml_node item, vtk::FileCells& cells, int base) const;
-  /// Returns the cells read before that equal the cells of a piece; nullopt if the piece has a new cell.
-  [[nodiscard]] std::optional<std::vector<Index>> known_cells(const Piece& piece) const;
-  /// Adds the cells of a piece as a part, or finds the part that has them; returns its number.
-  int part_of(const GridElement& grid, pugi::xml_node topology, Piece piece);
-  [[nodiscard]] bool is_part(int part, const Piece& piece) const;
-  std::vector<Index> append(pugi::xml_node topology, Piece piece);
+  /// Adds cells as a part, or finds the part that has them; returns its number.
+  int part_of(const GridElement& grid, pugi::xml_node topology, vtk::FileCells piece);
 
   Reading& reading_;
   std::map<std::string, std::size_t> known_topologies_;  ///< places of fields in the layout, by key
   std::map<int, int> series_parts_;
-  std::size_t fault_at_ = 0;
 };
 
 /// Reads Attributes and Sets, and makes arrays of them when all Grids have been read.

@@ -58,94 +58,25 @@ std::string key_of_cells(pugi::xml_node topology, const DataPlace& place, int ba
   return key;
 }
 
-}  // namespace
-
-int TopologyReader::read(const GridElement& grid, pugi::xml_node topology) {
-  if (!topology.attribute("Order").empty()) {
-    throw reading_.document.error(topology, "the Topology has an Order of nodes of its own",
-                                  "write it without");
-  }
-  const pugi::xml_node item = item_of_topology(topology);
-  Field field{Field::Role::connectivity, reading_.data.place_of(item)};
-  field.base = topology.attribute("BaseOffset").as_int(0);
-  const std::string key = key_of_cells(topology, field.place, field.base);
-  std::vector<Field>& fields = reading_.layout->fields;
-  if (const auto known = known_topologies_.find(key); known != known_topologies_.end()) {
-    Field& same = fields[known->second];
-    same.place.repeat(field.place);
-    return same.part;
-  }
-  field.part = part_of(grid, topology, piece_of(topology, item, field.place, field.base));
-  known_topologies_.emplace(key, fields.size());
-  fields.push_back(field);
-  return field.part;
-}
-
-pugi::xml_node TopologyReader::item_of_topology(pugi::xml_node topology) const {
+pugi::xml_node item_of_topology(const Reading& reading, pugi::xml_node topology) {
   const std::string type = attribute(topology, "TopologyType", "Type");
   if (type.empty())
-    throw reading_.document.error(topology, "the Topology has no TopologyType", "Triangle is one");
+    throw reading.document.error(topology, "the Topology has no TopologyType", "Triangle is one");
   const bool structured = type.find("MESH") != std::string::npos || type.find("Mesh") != std::string::npos ||
                           type.find("mesh") != std::string::npos;
   if (structured || same_but_for_case(type, "Polyhedron") ||
       (!same_but_for_case(type, "Mixed") && topology_type(type) == nullptr)) {
-    throw reading_.document.error(
+    throw reading.document.error(
         topology,
         fmt::format("the TopologyType is '{}'{}", shortened(type),
                     structured ? ", which is structured: its order is fixed by the grid" : ""),
         "types with fixed nodes are understood, from Polyvertex to Hexahedron_1331, and Mixed");
   }
-  return reading_.item_of(topology);
+  return reading.item_of(topology);
 }
 
-TopologyReader::Piece TopologyReader::piece_of(pugi::xml_node topology, pugi::xml_node item,
-                                               const DataPlace& place, int base) {
-  Piece piece;
-  piece.base = base;
-  std::vector<Index> numbers = reading_.data.read_indices(place);
-  const std::string type = attribute(topology, "TopologyType", "Type");
-  const std::int64_t claimed = claimed_cells(topology);
-  if (same_but_for_case(type, "Mixed")) {
-    if (!read_mixed(numbers, claimed, true, piece.cells) &&
-        (claimed < 0 || !read_mixed(numbers, claimed, false, piece.cells))) {
-      throw reading_.document.error(item,
-                                    fmt::format("the mixed Topology is damaged near value {}", fault_at_),
-                                    claimed < 0 ? "each cell is the number of its type and its points"
-                                                : fmt::format("NumberOfElements says {} cells", claimed));
-    }
-    check_vertices(item, piece.cells, base);
-    return piece;
-  }
-  const TopologyType& known = *topology_type(type);
-  std::int64_t nodes = known.nodes;
-  if (nodes == 0) {
-    nodes = topology.attribute("NodesPerElement").as_llong(0);
-    if (nodes <= 0 && place.shape.size() > 1) nodes = static_cast<std::int64_t>(place.shape.back());
-    if (nodes <= 0 && claimed > 0) nodes = std::ssize(numbers) / claimed;
-    if (nodes <= 0 && known.number == kPolyvertex) nodes = 1;
-    if (nodes <= 0 || nodes > kMaxIndex) {
-      throw reading_.document.error(topology, fmt::format("the {} has no NodesPerElement", known.name),
-                                    "it is needed");
-    }
-  }
-  const std::int64_t entries = std::ssize(numbers);
-  const std::int64_t cells = entries / nodes;
-  if (entries % nodes != 0 || (claimed >= 0 && claimed != cells) || cells > kMaxIndex) {
-    throw reading_.document.error(item, fmt::format("the Topology has {} entries", entries),
-                                  claimed >= 0
-                                      ? fmt::format("{} cells of {} points are announced", claimed, nodes)
-                                      : fmt::format("{} for each cell are needed", nodes));
-  }
-  piece.cells.types.assign(static_cast<std::size_t>(cells),
-                           static_cast<std::uint8_t>(vtk_type(known, nodes)));
-  resize_large(piece.cells.offsets, static_cast<std::size_t>(cells) + 1);
-  for (std::int64_t c = 0; c <= cells; ++c) piece.cells.offsets[static_cast<std::size_t>(c)] = c * nodes;
-  piece.cells.vertices = std::move(numbers);
-  check_vertices(item, piece.cells, base);
-  return piece;
-}
-
-std::int64_t TopologyReader::claimed_cells(pugi::xml_node topology) const {
+/// Returns the number of cells that a Topology announces, −1 if it announces none.
+std::int64_t claimed_cells(const Document& document, pugi::xml_node topology) {
   const std::string text = attribute(topology, "NumberOfElements", "Dimensions");
   std::string_view rest = text;
   std::int64_t cells = -1;
@@ -153,20 +84,22 @@ std::int64_t TopologyReader::claimed_cells(pugi::xml_node topology) const {
     std::int64_t size = -1;
     std::from_chars(word.data(), word.data() + word.size(), size);
     if (size < 0 || size > kMaxIndex) {
-      throw reading_.document.error(topology, fmt::format("NumberOfElements is '{}'", shortened(text)),
-                                    "a whole number up to 2147483647 is needed");
+      throw document.error(topology, fmt::format("NumberOfElements is '{}'", shortened(text)),
+                           "a whole number up to 2147483647 is needed");
     }
     cells = cells < 0 ? size : cells;  // the first of several numbers is the number of cells
   }
   return cells;
 }
 
-bool TopologyReader::read_mixed(const std::vector<Index>& numbers, std::int64_t claimed, bool counted,
-                                FileCells& cells) {
+/// Reads the cells of a mixed Topology; `counted`: cells of Polyvertex have a count of points, too. Returns
+/// false if the data are faulty near `numbers[at]`.
+bool read_mixed(const std::vector<Index>& numbers, std::int64_t claimed, bool counted, FileCells& cells,
+                std::size_t& at) {
   cells = {};
   std::size_t i = 0;
   while (i < numbers.size()) {
-    fault_at_ = i;
+    at = i;
     const TopologyType* const type = topology_type(numbers[i++]);
     if (type == nullptr) return false;
     std::int64_t nodes = type->nodes;
@@ -185,15 +118,16 @@ bool TopologyReader::read_mixed(const std::vector<Index>& numbers, std::int64_t 
   return claimed < 0 || claimed == static_cast<std::int64_t>(cells.types.size());
 }
 
-void TopologyReader::check_vertices(pugi::xml_node item, FileCells& cells, int base) const {
-  const Index count = reading_.mesh.vertex_count();
+/// Subtracts `base` from the points of cells. Throws InputError if a point does not exist.
+void check_vertices(const Reading& reading, pugi::xml_node item, FileCells& cells, int base) {
+  const Index count = reading.mesh.vertex_count();
   if (base == 0 && all_below(cells.vertices, count)) return;
   for (std::size_t i = 0; i < cells.vertices.size(); ++i) {
     const std::int64_t vertex = std::int64_t{cells.vertices[i]} - base;
     if (vertex < 0 || vertex >= count) {
       const auto cell = std::upper_bound(cells.offsets.begin(), cells.offsets.end(), static_cast<Offset>(i)) -
                         cells.offsets.begin() - 1;
-      throw reading_.document.error(
+      throw reading.document.error(
           item, fmt::format("cell {} (counted from 0) names a point that does not exist", cell),
           fmt::format("the Geometry has points {} to {}", base, count - 1 + base));
     }
@@ -201,35 +135,81 @@ void TopologyReader::check_vertices(pugi::xml_node item, FileCells& cells, int b
   }
 }
 
-std::optional<std::vector<Index>> TopologyReader::known_cells(const Piece& piece) const {
-  const Index count = index_size(piece.cells.types);
+/// Returns the cells of a Topology as the file has them.
+FileCells cells_of(Reading& reading, pugi::xml_node topology, pugi::xml_node item, const DataPlace& place,
+                   int base) {
+  FileCells piece;
+  std::vector<Index> numbers = reading.data.read_indices(place);
+  const std::string type = attribute(topology, "TopologyType", "Type");
+  const std::int64_t claimed = claimed_cells(reading.document, topology);
+  if (same_but_for_case(type, "Mixed")) {
+    std::size_t fault_at = 0;
+    if (!read_mixed(numbers, claimed, true, piece, fault_at) &&
+        (claimed < 0 || !read_mixed(numbers, claimed, false, piece, fault_at))) {
+      throw reading.document.error(item, fmt::format("the mixed Topology is damaged near value {}", fault_at),
+                                   claimed < 0 ? "each cell is the number of its type and its points"
+                                               : fmt::format("NumberOfElements says {} cells", claimed));
+    }
+    check_vertices(reading, item, piece, base);
+    return piece;
+  }
+  const TopologyType& known = *topology_type(type);
+  std::int64_t nodes = known.nodes;
+  if (nodes == 0) {
+    nodes = topology.attribute("NodesPerElement").as_llong(0);
+    if (nodes <= 0 && place.shape.size() > 1) nodes = static_cast<std::int64_t>(place.shape.back());
+    if (nodes <= 0 && claimed > 0) nodes = std::ssize(numbers) / claimed;
+    if (nodes <= 0 && known.number == kPolyvertex) nodes = 1;
+    if (nodes <= 0 || nodes > kMaxIndex) {
+      throw reading.document.error(topology, fmt::format("the {} has no NodesPerElement", known.name),
+                                   "it is needed");
+    }
+  }
+  const std::int64_t entries = std::ssize(numbers);
+  const std::int64_t cells = entries / nodes;
+  if (entries % nodes != 0 || (claimed >= 0 && claimed != cells) || cells > kMaxIndex) {
+    throw reading.document.error(item, fmt::format("the Topology has {} entries", entries),
+                                 claimed >= 0
+                                     ? fmt::format("{} cells of {} points are announced", claimed, nodes)
+                                     : fmt::format("{} for each cell are needed", nodes));
+  }
+  piece.types.assign(static_cast<std::size_t>(cells), static_cast<std::uint8_t>(vtk_type(known, nodes)));
+  resize_large(piece.offsets, static_cast<std::size_t>(cells) + 1);
+  for (std::int64_t c = 0; c <= cells; ++c) piece.offsets[static_cast<std::size_t>(c)] = c * nodes;
+  piece.vertices = std::move(numbers);
+  check_vertices(reading, item, piece, base);
+  return piece;
+}
+
+/// Returns the cells read before that equal the cells of a piece; nullopt if the piece has a new cell.
+std::optional<std::vector<Index>> known_cells(const Reading& reading, const FileCells& piece) {
+  const Index count = index_size(piece.types);
   std::array<bool, 256> types{};
-  for (const std::uint8_t type : reading_.cells.types) types[type] = true;
-  for (const std::uint8_t type : piece.cells.types) {
+  for (const std::uint8_t type : reading.cells.types) types[type] = true;
+  for (const std::uint8_t type : piece.types) {
     if (!types[type]) return {};
   }
   const auto is_same = [&](Index old, Index c) {
-    return reading_.cells.types[static_cast<std::size_t>(old)] ==
-               piece.cells.types[static_cast<std::size_t>(c)] &&
-           std::ranges::equal(vertices_of(reading_.cells, old), vertices_of(piece.cells, c));
+    return reading.cells.types[static_cast<std::size_t>(old)] == piece.types[static_cast<std::size_t>(c)] &&
+           std::ranges::equal(vertices_of(reading.cells, old), vertices_of(piece, c));
   };
-  bool in_place = count <= index_size(reading_.cells.types);
+  bool in_place = count <= index_size(reading.cells.types);
   for (Index c = 0; c < count && in_place; ++c) in_place = is_same(c, c);
   if (in_place) return index_range(0, count);
 
   std::unordered_multimap<std::size_t, Index> places;
-  places.reserve(reading_.cells.types.size());
-  for (Index c = 0; c < index_size(reading_.cells.types); ++c)
-    places.emplace(hash_of(sorted(vertices_of(reading_.cells, c))), c);
+  places.reserve(reading.cells.types.size());
+  for (Index c = 0; c < index_size(reading.cells.types); ++c)
+    places.emplace(hash_of(sorted(vertices_of(reading.cells, c))), c);
   std::vector<Index> found;
-  std::vector<bool> taken(reading_.cells.types.size(), false);
+  std::vector<bool> taken(reading.cells.types.size(), false);
   for (Index c = 0; c < count; ++c) {
-    const std::vector<Index> wanted = sorted(vertices_of(piece.cells, c));
+    const std::vector<Index> wanted = sorted(vertices_of(piece, c));
     const auto [begin, end] = places.equal_range(hash_of(wanted));
     const auto place = std::find_if(begin, end, [&](const auto& candidate) {
       const auto old = static_cast<std::size_t>(candidate.second);
-      return !taken[old] && reading_.cells.types[old] == piece.cells.types[static_cast<std::size_t>(c)] &&
-             sorted(vertices_of(reading_.cells, candidate.second)) == wanted;
+      return !taken[old] && reading.cells.types[old] == piece.types[static_cast<std::size_t>(c)] &&
+             sorted(vertices_of(reading.cells, candidate.second)) == wanted;
     });
     if (place == end) return {};
     taken[static_cast<std::size_t>(place->second)] = true;
@@ -238,17 +218,75 @@ std::optional<std::vector<Index>> TopologyReader::known_cells(const Piece& piece
   return found;
 }
 
-int TopologyReader::part_of(const GridElement& grid, pugi::xml_node topology, Piece piece) {
+bool is_part(const Reading& reading, int part, const FileCells& piece) {
+  const std::vector<Index>& rows = reading.rows[static_cast<std::size_t>(part)];
+  if (index_size(rows) != index_size(piece.types)) return false;
+  for (Index c = 0; c < index_size(rows); ++c) {
+    const auto old = static_cast<std::size_t>(rows[static_cast<std::size_t>(c)]);
+    if (reading.cells.types[old] != piece.types[static_cast<std::size_t>(c)] ||
+        !std::ranges::equal(vertices_of(reading.cells, static_cast<Index>(old)), vertices_of(piece, c))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Appends the cells of a piece to those of the mesh; returns their places.
+std::vector<Index> append(Reading& reading, pugi::xml_node topology, FileCells piece) {
+  const Index first = index_size(reading.cells.types);
+  const Index count = index_size(piece.types);
+  if (std::int64_t{first} + count > kMaxIndex) {
+    throw reading.document.error(topology, "the Grids have too many cells",
+                                 "at most 2147483647 are possible");
+  }
+  if (count > 0) reading.mesh.cell_blocks.push_back(first);
+  if (first == 0) {
+    reading.cells = std::move(piece);
+  } else {
+    const Offset before = reading.cells.offsets.back();
+    reading.cells.types.insert(reading.cells.types.end(), piece.types.begin(), piece.types.end());
+    reading.cells.vertices.insert(reading.cells.vertices.end(), piece.vertices.begin(), piece.vertices.end());
+    for (std::size_t c = 1; c < piece.offsets.size(); ++c)
+      reading.cells.offsets.push_back(before + piece.offsets[c]);
+  }
+  if (reading.where_cells_are.empty()) reading.where_cells_are = topology;
+  return index_range(first, count);
+}
+
+}  // namespace
+
+int TopologyReader::read(const GridElement& grid, pugi::xml_node topology) {
+  if (!topology.attribute("Order").empty()) {
+    throw reading_.document.error(topology, "the Topology has an Order of nodes of its own",
+                                  "write it without");
+  }
+  const pugi::xml_node item = item_of_topology(reading_, topology);
+  Field field{Field::Role::connectivity, reading_.data.place_of(item)};
+  field.base = topology.attribute("BaseOffset").as_int(0);
+  const std::string key = key_of_cells(topology, field.place, field.base);
+  std::vector<Field>& fields = reading_.layout->fields;
+  if (const auto known = known_topologies_.find(key); known != known_topologies_.end()) {
+    Field& same = fields[known->second];
+    same.place.repeat(field.place);
+    return same.part;
+  }
+  field.part = part_of(grid, topology, cells_of(reading_, topology, item, field.place, field.base));
+  known_topologies_.emplace(key, fields.size());
+  fields.push_back(field);
+  return field.part;
+}
+
+int TopologyReader::part_of(const GridElement& grid, pugi::xml_node topology, vtk::FileCells piece) {
   if (grid.series >= 0) {
     // the mesh of a series may be written again in each step
     const auto known = series_parts_.find(grid.series);
     if (known != series_parts_.end()) {
-      if (is_part(known->second, piece)) return known->second;
+      if (is_part(reading_, known->second, piece)) return known->second;
       throw reading_.document.error(
           topology, fmt::format("the cells change in time step {}", grid.step),
           "a series needs one mesh for all steps: save each mesh as a separate file");
     }
-    if (!reading_.layout->parts.empty() && is_part(0, piece)) return series_parts_[grid.series] = 0;
+    if (!reading_.layout->parts.empty() && is_part(reading_, 0, piece)) return series_parts_[grid.series] = 0;
   }
   const auto number = static_cast<int>(reading_.layout->parts.size());
   if (grid.series >= 0) series_parts_[grid.series] = number;
@@ -257,55 +295,18 @@ int TopologyReader::part_of(const GridElement& grid, pugi::xml_node topology, Pi
   part.name = grid.element.attribute("Name").value();
   if (part.name.empty()) part.name = fmt::format("grid {}", number);
   std::vector<Index> rows;
-  if (auto known = number == 0 ? std::nullopt : known_cells(piece)) {
+  if (auto known = number == 0 ? std::nullopt : known_cells(reading_, piece)) {
     part.has_own_cells = false;
     rows = std::move(*known);
     part.is_ascending = std::is_sorted(rows.begin(), rows.end());
   } else {
-    rows = append(topology, std::move(piece));
+    rows = append(reading_, topology, std::move(piece));
   }
   if (number > 0 && part.has_own_cells && is_added(grid.element)) part.below = below_of(part.name);
   if (number > 0 && part.below == 0) part.set = reading_.add_set_of_grid(part.name, rows);
   reading_.layout->parts.push_back(part);
   reading_.rows.push_back(std::move(rows));
   return number;
-}
-
-bool TopologyReader::is_part(int part, const Piece& piece) const {
-  const std::vector<Index>& rows = reading_.rows[static_cast<std::size_t>(part)];
-  if (index_size(rows) != index_size(piece.cells.types)) return false;
-  for (Index c = 0; c < index_size(rows); ++c) {
-    const auto old = static_cast<std::size_t>(rows[static_cast<std::size_t>(c)]);
-    if (reading_.cells.types[old] != piece.cells.types[static_cast<std::size_t>(c)] ||
-        !std::ranges::equal(vertices_of(reading_.cells, static_cast<Index>(old)),
-                            vertices_of(piece.cells, c))) {
-      return false;
-    }
-  }
-  return true;
-}
-
-std::vector<Index> TopologyReader::append(pugi::xml_node topology, Piece piece) {
-  const Index first = index_size(reading_.cells.types);
-  const Index count = index_size(piece.cells.types);
-  if (std::int64_t{first} + count > kMaxIndex) {
-    throw reading_.document.error(topology, "the Grids have too many cells",
-                                  "at most 2147483647 are possible");
-  }
-  if (count > 0) reading_.mesh.cell_blocks.push_back(first);
-  if (first == 0) {
-    reading_.cells = std::move(piece.cells);
-  } else {
-    const Offset before = reading_.cells.offsets.back();
-    reading_.cells.types.insert(reading_.cells.types.end(), piece.cells.types.begin(),
-                                piece.cells.types.end());
-    reading_.cells.vertices.insert(reading_.cells.vertices.end(), piece.cells.vertices.begin(),
-                                   piece.cells.vertices.end());
-    for (std::size_t c = 1; c < piece.cells.offsets.size(); ++c)
-      reading_.cells.offsets.push_back(before + piece.cells.offsets[c]);
-  }
-  if (reading_.where_cells_are.empty()) reading_.where_cells_are = topology;
-  return index_range(first, count);
 }
 
 }  // namespace meshorder::xdmf

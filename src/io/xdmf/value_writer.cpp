@@ -111,13 +111,8 @@ void Writer::put_indices(const DataPlace& place, std::span<const Index> indices,
   const bool is_shared =
       place.format == DataPlace::Format::hdf && files_.at(place.file).written.contains(place.dataset);
   if (place.format != DataPlace::Format::hdf || place.alternative < kInt32 || is_shared) {
-    const Values values = values_of_type(std::max(place.alternative, kInt32), [&](auto& numbers) {
-      using Number = typename std::decay_t<decltype(numbers)>::value_type;
-      if constexpr (std::is_integral_v<Number>) {
-        numbers.reserve(indices.size());
-        for (const Index index : indices) numbers.push_back(static_cast<Number>(index));
-      }
-    });
+    Values values = values_of_type(std::max(place.alternative, kInt32));
+    with_integers(values, [&](auto& numbers) { numbers.assign(indices.begin(), indices.end()); });
     return put(place, values, components);
   }
   if (layout_.is_made) set_number_type(items_[place.item], place.alternative);
@@ -135,18 +130,13 @@ void Writer::put_binary(pugi::xml_node item, const DataPlace& place, const Value
   const std::string name = fmt::format("{}{}.bin", stem_, binaries_.size());
   OutputFile& out = binaries_.emplace_back(path_.beside(name));
   Checksum sum;
-  std::visit(
-      [&](const auto& numbers) {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        if constexpr (std::is_arithmetic_v<Number>) {
-          for (const Number number : numbers) out.binary(number, place.order);
-          sum.add_all(numbers);
-        }
-      },
-      values);
+  with_numbers(values, [&](const auto& numbers) {
+    for (const auto number : numbers) out.binary(number, place.order);
+    sum.add_all(numbers);
+  });
   item.remove_attribute("Seek");
   item.remove_attribute(kValueMark);
-  if (!item.append_attribute(kValueMark).set_value(mark_of(sum.value()).c_str())) throw std::bad_alloc();
+  set_attribute(item, kValueMark, mark_of(sum.value()));
   set_text(item, name);
 }
 
@@ -154,33 +144,28 @@ std::string Writer::text_of_values(const Values& values, std::size_t components)
   constexpr std::size_t kMostCharacters = 32;  // of a number and the blank after it
   constexpr std::size_t kUsualCharacters = 20;
   std::string text;
-  std::visit(
-      [&](const auto& numbers) {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        if constexpr (std::is_arithmetic_v<Number>) {
-          resize_large(text, kUsualCharacters * numbers.size() + kMostCharacters);
-          char* at = text.data();
-          *at++ = '\n';
-          std::size_t in_row = 0;
-          for (const Number number : numbers) {
-            const auto used = static_cast<std::size_t>(at - text.data());
-            if (text.size() - used < kMostCharacters) {
-              text.resize(text.size() + text.size() / 4 + kMostCharacters);
-              at = text.data() + used;
-            }
-            if constexpr (std::is_integral_v<Number>) {
-              at = std::to_chars(at, at + kMostCharacters, number).ptr;
-            } else {
-              at = fmt::format_to(at, FMT_COMPILE("{}"), number);
-            }
-            const bool ends_row = ++in_row == components;
-            *at++ = ends_row ? '\n' : ' ';
-            if (ends_row) in_row = 0;
-          }
-          text.resize(static_cast<std::size_t>(at - text.data()));
-        }
-      },
-      values);
+  with_numbers(values, [&]<class Number>(const std::vector<Number>& numbers) {
+    resize_large(text, kUsualCharacters * numbers.size() + kMostCharacters);
+    char* at = text.data();
+    *at++ = '\n';
+    std::size_t in_row = 0;
+    for (const Number number : numbers) {
+      const auto used = static_cast<std::size_t>(at - text.data());
+      if (text.size() - used < kMostCharacters) {
+        text.resize(text.size() + text.size() / 4 + kMostCharacters);
+        at = text.data() + used;
+      }
+      if constexpr (std::is_integral_v<Number>) {
+        at = std::to_chars(at, at + kMostCharacters, number).ptr;
+      } else {
+        at = fmt::format_to(at, FMT_COMPILE("{}"), number);
+      }
+      const bool ends_row = ++in_row == components;
+      *at++ = ends_row ? '\n' : ' ';
+      if (ends_row) in_row = 0;
+    }
+    text.resize(static_cast<std::size_t>(at - text.data()));
+  });
   return text;
 }
 

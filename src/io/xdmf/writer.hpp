@@ -123,7 +123,6 @@ class Writer {
   // what the layout has no place for: attribute_writer.cpp
   /// Returns the array of marks of the set that "set:NAME" names; nullopt if there is no such set.
   [[nodiscard]] std::optional<DataArray> marks_named(const std::string& name, Association association) const;
-  [[nodiscard]] DataArray marks_of(const EntitySet& set) const;
   void add_others();
   /// Returns the sets that have a place in the layout.
   [[nodiscard]] std::set<std::pair<Association, std::string>> placed_sets() const;
@@ -153,8 +152,7 @@ class Writer {
       shapes_;  // shapes that have changed, by the new name of a dataset
   std::vector<OutputFile> binaries_;
   std::set<const Field*> gone_;
-  std::set<std::pair<Association, std::string>> names_;  // names of arrays
-  std::map<Association, NameNumbers> numbers_;
+  std::map<Association, DistinctNames> names_;  // of arrays
 };
 
 /// Sets the attribute `other` if the element has `other` but not `name`; otherwise sets or adds `name`.

@@ -1,0 +1,72 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/comm/communicator.hpp"
+#include "distributed/comm/layout.hpp"
+#include "distributed/comm/moved_rows.hpp"
+#include "distributed/comm/rows.hpp"
+#include "distributed/files/file_head.hpp"
+#include "distributed/files/file_slices.hpp"
+#include "distributed/files/grid_rows.hpp"
+#include "distributed/files/slice_reader.hpp"
+#include "distributed/order/mesh_slice.hpp"
+#include "distributed/order/order.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// A new file, which exists and is empty.
+struct SliceFile {
+  std::string path;  ///< temporary path, until it is complete
+  std::string name;  ///< final name, also in messages
+  // of the HDF5 file that belongs to an .xdmf file
+  std::string data;
+  std::string name_of_data;
+};
+
+/// The mesh of a file in its new order. Every rank has to call all functions; they throw SharedError if a
+/// rank cannot read or write. Each array is read when its rows are needed, the cells once.
+///
+/// The new file is the old one with the rows of its arrays in their new places; everything else is copied
+/// byte by byte, except the offsets of arrays that follow a compressed array. A new .xdmf file and its HDF5
+/// file are the same as those of the serial writer.
+class MovedFile {
+ public:
+  /// Reads the shapes of the cells. `communicator`, `slices` and `order` must outlive this object.
+  MovedFile(const Communicator& communicator, const FileSlices& slices, const DistributedOrder& order);
+
+  /// Returns the new place of each cell of the slice.
+  [[nodiscard]] const std::vector<GlobalIndex>& new_cells() const noexcept { return new_cells_; }
+
+  /// Writes the new file. O(size of the slice); takes memory for three copies of the cells or of the largest
+  /// array of a rank.
+  void write(const SliceFile& file);
+
+  /// Returns the points and cells in this rank's range of new places. O(size of the slice).
+  [[nodiscard]] MeshSlice slice();
+
+  /// Returns the mesh, valid as long as this object; it takes the cells, so call it last. O(size of the
+  /// slice).
+  [[nodiscard]] GridRows grid();
+
+ private:
+  [[nodiscard]] Rows& cells();
+  [[nodiscard]] std::vector<std::byte> rows(const FilePart& part);
+  void write_xdmf(const SliceFile& file);
+
+  const Communicator& communicator_;
+  const FileHead& head_;
+  SliceReader reader_;
+  const DistributedOrder& order_;
+  MeshSlice slice_;
+  RowMover vertices_;
+  std::vector<GlobalIndex> new_cells_;
+  RowMover cell_mover_;
+  std::optional<Rows> cells_;
+};
+
+}  // namespace meshorder::distributed
