@@ -46,6 +46,7 @@ using distributed::DistributedOptions;
 using distributed::DistributedOrder;
 using distributed::DistributedReport;
 using distributed::ExodusSlices;
+using distributed::FileHead;
 using distributed::FileSlices;
 using distributed::GlobalEdgeSpan;
 using distributed::GlobalIndex;
@@ -117,13 +118,13 @@ void require_points_of(const Communicator& communicator, const Mesh& mesh, const
   });
 }
 
-/// Returns the input if all ranks can read it in parts, and nothing in these cases:
+/// Returns the head of the input if all ranks can read it in parts, and nothing in these cases:
 /// - the input is not a .vtu, .vtkhdf or .xdmf file;
 /// - the output has another extension than the input;
 /// - rank 0 has to read and write;
 /// - maps are wanted, but there is no output, or a Mesh would have the nodes of some cells in another order;
 /// - pieces of an .xdmf file, or pieces in Nemesis, are wanted.
-std::optional<FileSlices> slices_of(const Communicator& communicator, const Arguments& arguments) {
+std::optional<FileHead> head_of(const Communicator& communicator, const Arguments& arguments) {
   const auto extension = [](const std::string& name) { return std::filesystem::path(name).extension(); };
   const std::filesystem::path kind = extension(arguments.input);
   const bool with_maps = !arguments.maps.empty();
@@ -133,9 +134,9 @@ std::optional<FileSlices> slices_of(const Communicator& communicator, const Argu
       needs_root(arguments) || (with_maps && arguments.output.empty())) {
     return std::nullopt;
   }
-  std::optional<FileSlices> slices = FileSlices::open(communicator, arguments.input);
-  if (slices && with_maps && !slices->has_nodes_as_a_mesh(communicator)) slices.reset();
-  return slices;
+  std::optional<FileHead> head = shared_head(communicator, arguments.input);
+  if (head && with_maps && !FileSlices(communicator, *head).has_nodes_as_a_mesh()) head.reset();
+  return head;
 }
 
 /// Returns the input if it is an Exodus file that all ranks can read in parts, and if the run writes only
@@ -286,17 +287,16 @@ void run(const Arguments& arguments, const Communicator& communicator) {
   OrderOutputs outputs(communicator, arguments);
   const Stopwatch reading;
   Notes notes;
-  const std::optional<FileSlices> slices = slices_of(communicator, arguments);
-  const std::optional<ExodusSlices> exodus =
-      slices ? std::nullopt : exodus_slices_of(communicator, arguments);
-  const bool by_all = slices || exodus;
+  const std::optional<FileHead> head = head_of(communicator, arguments);
+  const std::optional<ExodusSlices> exodus = head ? std::nullopt : exodus_slices_of(communicator, arguments);
+  const bool by_all = head || exodus;
   WholeMesh whole;
   if (!by_all) {
     whole = read_at_root(communicator, arguments.with_output(), parse<Ids>(arguments.ids), notes);
     outputs.check(whole.mesh);
     require_points_of(communicator, whole.mesh, arguments);
   }
-  distributed::MeshSlice slice = slices   ? slices->read(communicator)
+  distributed::MeshSlice slice = head     ? FileSlices(communicator, *head).read()
                                  : exodus ? exodus->read(communicator)
                                           : distributed::scattered(communicator, whole.mesh);
   const GlobalIndex vertex_count = slice.vertices.size();
@@ -308,8 +308,8 @@ void run(const Arguments& arguments, const Communicator& communicator) {
 
   DistributedOrder order = distributed::order_slices(communicator, std::move(slice), options);
   const Stopwatch writing;
-  if (slices) {
-    outputs.write(*slices, order, before, notes);
+  if (head) {
+    outputs.write(*head, order, before, notes);
   } else if (exodus) {
     outputs.write(*exodus, order, before, notes);
   } else {

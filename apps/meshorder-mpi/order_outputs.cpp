@@ -82,13 +82,13 @@ void OrderOutputs::check(const Mesh& mesh) const {
   });
 }
 
-void OrderOutputs::write(const distributed::FileSlices& slices, const distributed::DistributedOrder& order,
+void OrderOutputs::write(const distributed::FileHead& head, const distributed::DistributedOrder& order,
                          const MeshChecksums& before, Notes& notes) {
-  distributed::MovedFile moved(communicator_, slices, order);
+  distributed::MovedFile moved(communicator_, head, order);
   if (!files_.output.empty()) {
     SharedOutput file(communicator_, set_, files_.output);
     std::optional<SharedOutput> data;
-    const std::string name_of_data = slices.new_data(communicator_, files_.output);
+    const std::string name_of_data = moved.new_data(files_.output);
     if (!name_of_data.empty()) data.emplace(communicator_, set_, FilePath::derived(name_of_data));
     moved.write({file.path(), files_.output, data ? data->path() : "", name_of_data});
     file.commit();

@@ -3,7 +3,7 @@
 
 #include "distributed/comm/communicator.hpp"
 #include "distributed/files/exodus_slices.hpp"
-#include "distributed/files/file_slices.hpp"
+#include "distributed/files/file_head.hpp"
 #include "distributed/files/grid_rows.hpp"
 #include "distributed/files/nemesis.hpp"
 #include "distributed/files/pieces.hpp"
@@ -53,7 +53,7 @@ class OrderOutputs {
   /// Writes a mesh that all ranks have read, in its new order, and its maps.
   ///
   /// @param before  checksums of the mesh in its old order; used for maps only
-  void write(const distributed::FileSlices& slices, const distributed::DistributedOrder& order,
+  void write(const distributed::FileHead& head, const distributed::DistributedOrder& order,
              const MeshChecksums& before, Notes& notes);
 
   /// Writes the pieces and the maps of a mesh that all ranks read in parts.

@@ -33,6 +33,7 @@ bool is_hdf5(const std::string& path) {
 /// Returns the head of a file whose parts are in an HDF5 file; nothing if parts overlap there.
 std::optional<FileHead> head_of(FileFacts::Kind kind, FileLayout layout, const std::string& path) {
   FileHead head;
+  head.path = path;
   static_cast<FileSizes&>(head.facts) = static_cast<const FileSizes&>(layout);
   head.facts.kind = kind;
   head.facts.bytes = static_cast<Offset>(std::filesystem::file_size(path));
@@ -84,9 +85,7 @@ std::optional<FileHead> read_xdmf_head(const std::string& path) {
   std::optional<xdmf::RawGrid> grid = xdmf::find_raw(file);
   if (!grid) return std::nullopt;
   std::optional<FileHead> head = head_of(FileFacts::Kind::xdmf, std::move(grid->layout), grid->data);
-  if (!head) return std::nullopt;
-  head->data = std::move(grid->data);
-  head->files = std::move(grid->files);
+  if (head) head->files = std::move(grid->files);
   return head;
 }
 #else

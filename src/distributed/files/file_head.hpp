@@ -28,6 +28,7 @@ struct FileFacts : FileSizes {
 /// The description of a file. For a .vtu file it comes from the XML and the words before the arrays; for a
 /// .vtkhdf file, and for the HDF5 file of an .xdmf file, from libhdf5.
 struct FileHead {
+  std::string path;  ///< of the file that has the parts: of an .xdmf file, its HDF5 file
   FileFacts facts;
   std::vector<FilePart> parts;     ///< sorted by their place in the file
   std::vector<std::string> names;  ///< of the parts in messages, by their numbers
@@ -35,7 +36,6 @@ struct FileHead {
       blocks;  ///< of each part, by number: first byte of each block, then the end of the last
   VtuXml xml;
   std::string mold;                        ///< of a .vtkhdf file: result of `mold_of` for its arrays
-  std::string data;                        ///< of an .xdmf file: path of its HDF5 file
   std::shared_ptr<const SplitFile> files;  ///< of an .xdmf file
 };
 

@@ -2,59 +2,67 @@
 #pragma once
 
 #include "distributed/comm/communicator.hpp"
+#include "distributed/comm/layout.hpp"
 #include "distributed/files/file_head.hpp"
+#include "distributed/files/shared_file.hpp"
 #include "distributed/order/mesh_slice.hpp"
 
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace meshorder::distributed {
 
-/// A file that all ranks read at once, array after array; each rank handles its range of the rows.
-/// The file is one of these:
-/// - a .vtu file of one piece with its arrays in appended data, raw or in compressed blocks;
-/// - a .vtkhdf file of one partition, whose datasets are neither chunked nor compressed;
-/// - an .xdmf file of one mesh of one cell type, with such datasets.
+/// Returns the head of a file for all ranks; nothing if `read_head` returns nothing. Its blocks, XML, mold
+/// and `files` are at the root only. Every rank has to call it. Rank 0 finds the datasets of HDF5 files by
+/// libhdf5; the other ranks do not need this library.
 ///
-/// Rank 0 finds the datasets by libhdf5; the other ranks do not need this library.
+/// @throws SharedError as `read_head`
+[[nodiscard]] std::optional<FileHead> shared_head(const Communicator& communicator, const std::string& path);
+
+/// A file that all ranks read at once, array after array; each rank reads its range of the rows. Every rank
+/// has to call all functions; they throw SharedError if a rank cannot read.
 ///
 /// Formats: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html, and
 /// "VTKHDF File Format".
 class FileSlices {
  public:
-  /// Opens a file; every rank has to call it. Returns nothing for a file of another kind: with several pieces
-  /// or partitions, with text, base64, chunks or the other byte order, or with a compression that this build
-  /// lacks. O(size of its XML + blocks) at the root.
-  ///
-  /// @throws SharedError for a file of this kind that is damaged: bad XML, counts that differ, arrays beyond
-  ///         its end, blocks whose sizes are impossible
-  [[nodiscard]] static std::optional<FileSlices> open(const Communicator& communicator,
-                                                      const std::string& path);
+  /// @param head  of all ranks; like `communicator`, it must outlive this object
+  /// @throws SharedError if a rank cannot open the file
+  FileSlices(const Communicator& communicator, const FileHead& head);
 
   /// Returns whether the nodes of each cell have the same sequence in the file as in a Mesh; if so, file and
-  /// Mesh have the same checksum. Every rank has to call it. O(cells).
-  ///
-  /// @throws SharedError if a rank cannot read
-  [[nodiscard]] bool has_nodes_as_a_mesh(const Communicator& communicator) const;
+  /// Mesh have the same checksum. O(cells).
+  [[nodiscard]] bool has_nodes_as_a_mesh() const;
 
-  /// Reads this rank's points and cells. Every rank has to call it. O(size of the slice).
+  /// Reads this rank's points and cells. O(size of the slice).
   ///
   /// @throws SharedError for coordinates that are not finite, unknown cell types, cells with too few vertices
   ///         or with vertices that do not exist, and for damaged blocks
-  [[nodiscard]] MeshSlice read(const Communicator& communicator) const;
+  [[nodiscard]] MeshSlice read() const;
 
-  /// Returns the path of the HDF5 file that belongs to a new .xdmf file of this mesh; empty for files of
-  /// other kinds. Every rank has to call it.
-  [[nodiscard]] std::string new_data(const Communicator& communicator, const std::string& name) const;
-
-  /// Returns the path of the file that has the arrays.
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  /// Returns the description of the file. It has blocks and XML only at the root.
-  [[nodiscard]] const FileHead& head() const noexcept { return head_; }
+  [[nodiscard]] const SharedFile& file() const noexcept { return file_; }
+  [[nodiscard]] const FilePart& part(FilePart::Role role) const;
+  /// Returns the ranges of all ranks, without points and cells.
+  [[nodiscard]] MeshSlice empty_slice() const;
+  /// Returns the bytes of rows begin … end − 1 of a part.
+  [[nodiscard]] std::vector<std::byte> rows(const FilePart& part, GlobalIndex begin, GlobalIndex end) const;
+  void read_points(MeshSlice& slice) const;
+  void read_shapes(MeshSlice& slice) const;
+  /// Reads the vertices of the cells; `slice.shapes` must be set.
+  void read_cells(MeshSlice& slice) const;
 
  private:
-  std::string path_;
-  FileHead head_;
+  /// Returns the VTK types of this rank's cells.
+  [[nodiscard]] std::vector<int> types() const;
+  /// Reads the offsets of this rank's cells, counted from the first entry of these cells; returns that
+  /// entry's place.
+  [[nodiscard]] Offset read_offsets(MeshSlice& slice) const;
+
+  const Communicator& communicator_;
+  const FileHead& head_;
+  SharedFile file_;
 };
 
 }  // namespace meshorder::distributed

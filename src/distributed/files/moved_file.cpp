@@ -132,15 +132,14 @@ std::string fields_with_values(const std::string& head, const std::string& path)
 
 }  // namespace
 
-MovedFile::MovedFile(const Communicator& communicator, const FileSlices& slices,
-                     const DistributedOrder& order)
+MovedFile::MovedFile(const Communicator& communicator, const FileHead& head, const DistributedOrder& order)
     : communicator_(communicator),
-      head_(slices.head()),
-      reader_(communicator, slices.path(), head_),
+      head_(head),
+      file_(communicator, head),
       order_(order),
       slice_([&] {
-        MeshSlice slice = reader_.empty_slice();
-        reader_.read_shapes(slice);
+        MeshSlice slice = file_.empty_slice();
+        file_.read_shapes(slice);
         return slice;
       }()),
       vertices_(communicator, slice_.vertices, order.new_vertices),
@@ -151,7 +150,7 @@ MovedFile::MovedFile(const Communicator& communicator, const FileSlices& slices,
 /// at the first call.
 Rows& MovedFile::cells() {
   if (cells_) return *cells_;
-  reader_.read_cells(slice_);
+  file_.read_cells(slice_);
   slice_.shapes = {};
   Rows rows = std::move(slice_.cell_vertices);
   {
@@ -181,14 +180,14 @@ std::vector<std::byte> MovedFile::rows(const FilePart& part) {
   }
   const bool on_vertices = part.association == Association::vertices;
   const Layout& layout = on_vertices ? slice_.vertices : slice_.cells;
-  const std::vector<std::byte> values = reader_.rows(part, layout.begin(rank), layout.end(rank));
+  const std::vector<std::byte> values = file_.rows(part, layout.begin(rank), layout.end(rank));
   return (on_vertices ? vertices_ : cell_mover_).moved(values, part.row_size());
 }
 
 MeshSlice MovedFile::slice() {
-  MeshSlice slice = reader_.empty_slice();
-  reader_.read_points(slice);
-  reader_.read_shapes(slice);
+  MeshSlice slice = file_.empty_slice();
+  file_.read_points(slice);
+  file_.read_shapes(slice);
   slice.points = moved_values(communicator_, vertices_, slice.points);
   slice.shapes = moved_values(communicator_, cell_mover_, slice.shapes);
   slice.cell_vertices = communicator_.together([&] { return cells(); });
@@ -208,15 +207,22 @@ GridRows MovedFile::grid() {
     grid.xml = head_.mold;
     if (head_.facts.kind == FileFacts::Kind::vtkhdf) return;
     grid.xml = head_.xml.text() + std::string(kEndOfHead);
-    grid.fields = fields_with_values(head_.xml.text(), reader_.path());
+    grid.fields = fields_with_values(head_.xml.text(), head_.path);
   });
   return grid;
+}
+
+std::string MovedFile::new_data(const std::string& name) const {
+  if (head_.facts.kind != FileFacts::Kind::xdmf) return {};
+  return communicator_
+      .broadcast(communicator_.at_root([&] { return std::vector{head_.files->data_of(name)}; }))
+      .front();
 }
 
 void MovedFile::write(const SliceFile& file) {
   if (head_.facts.kind == FileFacts::Kind::xdmf) return write_xdmf(file);
   SharedFile out(communicator_, file.path, file.name, SharedFile::Use::write);
-  const SharedFile& in = reader_.file();
+  const SharedFile& in = file_.file();
 
   // write the XML last: it has the offsets of arrays whose compressed sizes are not known yet
   const bool is_vtkhdf = head_.facts.kind == FileFacts::Kind::vtkhdf;
@@ -247,7 +253,7 @@ void MovedFile::write(const SliceFile& file) {
 
 void MovedFile::write_xdmf(const SliceFile& file) {
   // compute the checksum first, because both files begin with it
-  const FilePart& points = reader_.part(FilePart::Role::points);
+  const FilePart& points = file_.part(FilePart::Role::points);
   const std::vector<std::byte> moved_points = rows(points);
   const std::uint64_t checksum =
       checksum_of_xdmf(communicator_, head_.facts.vertices, points, moved_points, cells());

@@ -8,7 +8,6 @@
 #include "distributed/files/file_head.hpp"
 #include "distributed/files/file_slices.hpp"
 #include "distributed/files/grid_rows.hpp"
-#include "distributed/files/slice_reader.hpp"
 #include "distributed/order/mesh_slice.hpp"
 #include "distributed/order/order.hpp"
 
@@ -36,11 +35,15 @@ struct SliceFile {
 /// file are the same as those of the serial writer.
 class MovedFile {
  public:
-  /// Reads the shapes of the cells. `communicator`, `slices` and `order` must outlive this object.
-  MovedFile(const Communicator& communicator, const FileSlices& slices, const DistributedOrder& order);
+  /// Reads the shapes of the cells. `communicator`, `head` and `order` must outlive this object.
+  MovedFile(const Communicator& communicator, const FileHead& head, const DistributedOrder& order);
 
   /// Returns the new place of each cell of the slice.
   [[nodiscard]] const std::vector<GlobalIndex>& new_cells() const noexcept { return new_cells_; }
+
+  /// Returns the path of the HDF5 file that belongs to a new .xdmf file of this name; empty for files of
+  /// other kinds.
+  [[nodiscard]] std::string new_data(const std::string& name) const;
 
   /// Writes the new file. O(size of the slice); takes memory for three copies of the cells or of the largest
   /// array of a rank.
@@ -60,7 +63,7 @@ class MovedFile {
 
   const Communicator& communicator_;
   const FileHead& head_;
-  SliceReader reader_;
+  FileSlices file_;
   const DistributedOrder& order_;
   MeshSlice slice_;
   RowMover vertices_;

@@ -49,6 +49,7 @@ class HeadReader {
   HeadReader(const std::string& path, int ranks) : path_(path), ranks_(ranks) {}
 
   std::optional<FileHead> read() {
+    head_.path = path_;
     std::string text = head_of(path_);
     if (text.empty()) return std::nullopt;
     head_.facts.first_byte = static_cast<Offset>(text.size());
