@@ -56,11 +56,13 @@ std::optional<std::string> File::text_attribute(const std::string& path, const s
   return value;
 }
 
-void File::put_attribute(const std::string& path, const std::string& name, hid_t space, hid_t type,
-                         hid_t memory, const void* value) {
+void File::put_attribute(const std::string& path, const std::string& name,
+                         const std::vector<std::uint64_t>& shape, hid_t type, hid_t memory,
+                         const void* value) {
   const Handle object = open_object(path);
   if (H5Aexists(object.id(), name.c_str()) > 0) H5Adelete(object.id(), name.c_str());
-  const Handle attribute(H5Acreate2(object.id(), name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
+  const Handle space = space_of(shape);
+  const Handle attribute(H5Acreate2(object.id(), name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT),
                          H5Aclose);
   if (attribute.is_open() && H5Awrite(attribute.id(), memory, value) >= 0) return;
   throw InputError(name_,
@@ -76,31 +78,25 @@ void File::set_attribute(const std::string& path, const std::string& name, std::
     const bool is_known = type.is_open() && alternative_of(type.id()) < native_types().size();
     return is_known ? std::move(type) : Handle(H5Tcopy(H5T_STD_I64LE), H5Tclose);
   };
-  const Handle type = type_of_old();
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  put_attribute(path, name, space.id(), type.id(), H5T_NATIVE_INT64, &value);
+  put_attribute(path, name, {}, type_of_old().id(), H5T_NATIVE_INT64, &value);
 }
 
 void File::set_attribute(const std::string& path, const std::string& name, double value) {
   const Session session;
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  put_attribute(path, name, space.id(), H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
+  put_attribute(path, name, {}, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
 }
 
 void File::set_attribute(const std::string& path, const std::string& name, const std::string& value) {
   const Session session;
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.id(), value.size() + 1);
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  put_attribute(path, name, space.id(), type.id(), type.id(), value.c_str());
+  put_attribute(path, name, {}, type.id(), type.id(), value.c_str());
 }
 
 void File::set_attribute(const std::string& path, const std::string& name,
                          std::span<const std::int64_t> values) {
   const Session session;
-  const hsize_t count = values.size();
-  const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  put_attribute(path, name, space.id(), H5T_STD_I64LE, H5T_NATIVE_INT64, values.data());
+  put_attribute(path, name, {values.size()}, H5T_STD_I64LE, H5T_NATIVE_INT64, values.data());
 }
 
 }  // namespace meshorder::hdf5

@@ -35,23 +35,18 @@ void copy_attribute(hid_t from, const char* name, hid_t to) {
   if (varies) H5Dvlen_reclaim(memory.id(), space.id(), H5P_DEFAULT, bytes.data());
 }
 
-/// Returns the order of a group's links: the order of creation if the group records it, else by name.
-H5_index_t order_of(hid_t group) {
+/// Returns which order of its links a group records: flags of the library.
+unsigned order_flags(hid_t group) {
   const Handle creation(H5Gget_create_plist(group), H5Pclose);
   unsigned flags = 0;
-  if (H5Pget_link_creation_order(creation.id(), &flags) < 0) return H5_INDEX_NAME;
-  return (flags & H5P_CRT_ORDER_INDEXED) != 0 ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME;
+  return H5Pget_link_creation_order(creation.id(), &flags) < 0 ? 0 : flags;
 }
 
 /// Returns the creation properties for a copy of a group, which keeps the order of links if the group does.
 /// The group's own properties cannot be used: they hold the addresses of its links in the old file.
 Handle creation_of_copy(hid_t group) {
-  const Handle old(H5Gget_create_plist(group), H5Pclose);
   Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-  unsigned flags = 0;
-  if (H5Pget_link_creation_order(old.id(), &flags) >= 0 && flags != 0) {
-    H5Pset_link_creation_order(creation.id(), flags);
-  }
+  if (const unsigned flags = order_flags(group); flags != 0) H5Pset_link_creation_order(creation.id(), flags);
   return creation;
 }
 
@@ -65,7 +60,8 @@ class CopyWithoutValues {
     H5O_info_t group;
     H5Oget_info(from, &group);
     first_paths_.emplace(group.addr, path.empty() ? "/" : path);
-    for (const std::string& name : names_in(from, order_of(from)))
+    const bool by_creation = (order_flags(from) & H5P_CRT_ORDER_INDEXED) != 0;
+    for (const std::string& name : names_in(from, by_creation ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME))
       copy_link(from, to, name, fmt::format("{}/{}", path, name));
   }
 

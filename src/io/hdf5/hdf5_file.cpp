@@ -4,7 +4,6 @@
 #include "io/hdf5/parts.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/hdf5/visitor.hpp"
-#include "io/stream/output_file.hpp"
 #include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
@@ -268,23 +267,30 @@ void File::close() {
   session.require_no_failure(name_);
 }
 
-void write_from(const FilePath& path, const std::string& bytes, const std::function<void(File&)>& fill) {
-  OutputFile out(path);
-  const auto open = [&] {
-    if (path.store() != nullptr) return File::in_memory(bytes, path.string());
-    out.write(bytes);
-    out.close();
-    return File::change(out.temporary(), path.string());
-  };
-  std::optional<File> file(open());
-  fill(*file);
+NewFile::NewFile(const FilePath& path, const std::string& bytes) : path_(path), out_(path) {
   if (path.store() != nullptr) {
-    out.write(file->bytes());
-  } else {
-    file->close();
+    file_.emplace(File::in_memory(bytes, path.string()));
+    return;
   }
-  file.reset();
-  out.commit();
+  out_.write(bytes);
+  out_.close();
+  file_.emplace(File::change(out_.temporary(), path.string()));
+}
+
+OutputFile NewFile::finish() {
+  if (path_.store() != nullptr) {
+    out_.write(file_->bytes());
+  } else {
+    file_->close();
+  }
+  file_.reset();
+  return std::move(out_);
+}
+
+void write_from(const FilePath& path, const std::string& bytes, const std::function<void(File&)>& fill) {
+  NewFile file(path, bytes);
+  fill(file.file());
+  file.finish().commit();
 }
 
 }  // namespace meshorder::hdf5

@@ -10,6 +10,7 @@
 #include "io/hdf5/handle.hpp"
 #include "io/hdf5/library.hpp"
 #include "io/stream/file_path.hpp"
+#include "io/stream/output_file.hpp"
 #include <meshorder/mesh.hpp>
 
 #include <cstddef>
@@ -140,8 +141,8 @@ class File {
   [[nodiscard]] Handle open_object(const std::string& path) const;
   [[nodiscard]] Handle open_dataset_if_there(const std::string& path) const;
   [[nodiscard]] Handle open_attribute(const std::string& path, const std::string& name) const;
-  void put_attribute(const std::string& path, const std::string& name, hid_t space, hid_t type, hid_t memory,
-                     const void* value);
+  void put_attribute(const std::string& path, const std::string& name,
+                     const std::vector<std::uint64_t>& shape, hid_t type, hid_t memory, const void* value);
   void flush() const;
   void read(const std::string& path, hid_t type, void* values) const;
   [[nodiscard]] std::vector<std::string> read_strings(const std::string& path, const Handle& dataset,
@@ -161,8 +162,22 @@ class File {
 /// Returns the path with one slash before each part and no slash at its end.
 std::string normal_path(std::string_view path);
 
-/// Writes an HDF5 file: opens `bytes` as a file (in memory for a path in a store, else beside the path),
-/// calls `fill` to change it, and puts it in place. Throws as OutputFile and File.
+/// A copy of `bytes` as a file, to be changed and put in place: in memory for a path in a store, else beside
+/// the path. Throws as OutputFile and File.
+class NewFile {
+ public:
+  NewFile(const FilePath& path, const std::string& bytes);
+  [[nodiscard]] File& file() { return *file_; }
+  /// Closes the file; returns it as a complete output.
+  [[nodiscard]] OutputFile finish();
+
+ private:
+  FilePath path_;
+  OutputFile out_;
+  std::optional<File> file_;
+};
+
+/// Writes an HDF5 file: opens `bytes` as a `NewFile`, calls `fill` to change it, and puts it in place.
 void write_from(const FilePath& path, const std::string& bytes, const std::function<void(File&)>& fill);
 
 }  // namespace meshorder::hdf5

@@ -29,6 +29,11 @@ std::size_t alternative_of(hid_t type) {
   return static_cast<std::size_t>(found - known.begin());
 }
 
+Handle space_of(const std::vector<std::uint64_t>& shape) {
+  const std::vector<hsize_t> lengths(shape.begin(), shape.end());
+  return {H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(), nullptr), H5Sclose};
+}
+
 std::uint64_t most_bytes(hid_t dataset) {
   constexpr std::uint64_t kMostFromOneByte = 4096;
   const Handle creation(H5Dget_create_plist(dataset), H5Pclose);

@@ -21,6 +21,9 @@ std::array<hid_t, 10> native_types();
 /// Returns the alternative of Values for the usual number types, in either byte order; 10 for all others.
 std::size_t alternative_of(hid_t type);
 
+/// Makes a dataspace; that of a single value for no lengths.
+Handle space_of(const std::vector<std::uint64_t>& shape);
+
 /// Returns an upper bound on the bytes of a dataset's values. In a dataset of chunks, which filters may have
 /// compressed, each stored byte counts as 4096.
 std::uint64_t most_bytes(hid_t dataset);

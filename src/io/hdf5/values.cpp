@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -43,11 +42,6 @@ std::uint64_t bytes_of_chunk(hid_t creation, hid_t type) {
   std::uint64_t bytes = H5Tget_size(type);
   for (int k = 0; k < rank; ++k) bytes = bytes_for(bytes, lengths.at(static_cast<std::size_t>(k)));
   return bytes;
-}
-
-Handle space_of(const std::vector<std::uint64_t>& shape) {
-  const std::vector<hsize_t> dims(shape.begin(), shape.end());
-  return {H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose};
 }
 
 /// Returns the properties of a new dataset.

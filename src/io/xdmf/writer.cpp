@@ -38,13 +38,11 @@ void Writer::write() {
   add_others();
   rename_files();
   mark_files(mark_of_mesh());
-  for (auto& [name, output] : files_) finish(output);
-
-  put_xml([&](std::string_view part) { xml.write(part); });
   std::vector<OutputFile> all;
   all.reserve(1 + files_.size() + binaries_.size());
   all.push_back(std::move(xml));
-  for (auto& [name, output] : files_) all.push_back(std::move(*output.out));
+  for (auto& [name, output] : files_) all.push_back(output.out->finish());
+  put_xml([&](std::string_view part) { all.front().write(part); });
   for (OutputFile& binary : binaries_) all.push_back(std::move(binary));
   OutputFile::commit_all(all);
 }
@@ -56,8 +54,9 @@ std::string Writer::write_without_values(const std::filesystem::path& data, cons
   const std::string name = path_.beside(output.name).string();
   if (!std::ofstream(data, std::ios::binary).write(bytes.data(), std::ssize(bytes)).flush())
     throw InputError(name, "cannot be written", "the disk may be full");
-  output.file = std::make_unique<hdf5::File>(hdf5::File::change(data, name));
-  hdf5::File& file = *files_.emplace(old_name, std::move(output)).first->second.file;
+  hdf5::File file = hdf5::File::change(data, name);
+  output.file = &file;
+  files_.emplace(old_name, std::move(output));
   for (const Field& field : fields_) {
     file.give_room(field.place.dataset);
     if (field.role == Field::Role::connectivity) announce_cells_of(field);
@@ -94,28 +93,11 @@ void Writer::open_files() {
   for (const auto& [old_name, bytes] : layout_.hdf5) {
     Hdf5Output output;
     output.name = new_name(old_name);
-    const FilePath target = path_.beside(output.name);
-    output.out = std::make_unique<OutputFile>(target);
-    if (target.store() != nullptr) {
-      output.file = std::make_unique<hdf5::File>(hdf5::File::in_memory(bytes, target.string()));
-    } else {
-      output.out->write(bytes);
-      output.out->close();
-      output.file =
-          std::make_unique<hdf5::File>(hdf5::File::change(output.out->temporary(), target.string()));
-    }
+    output.out = std::make_unique<hdf5::NewFile>(path_.beside(output.name), bytes);
+    output.file = &output.out->file();
     for (const auto& [path, rows] : output.file->datasets()) output.datasets.insert(path);
     files_.emplace(old_name, std::move(output));
   }
-}
-
-void Writer::finish(Hdf5Output& output) const {
-  if (path_.store() != nullptr) {
-    output.out->write(output.file->bytes());
-  } else {
-    output.file->close();
-  }
-  output.file.reset();
 }
 
 void Writer::rename_files() {

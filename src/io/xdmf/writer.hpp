@@ -31,8 +31,8 @@ namespace meshorder::xdmf {
 /// An HDF5 file that is being written.
 struct Hdf5Output {
   std::string name;  ///< in the new XML
-  std::unique_ptr<OutputFile> out;
-  std::unique_ptr<hdf5::File> file;
+  std::unique_ptr<hdf5::NewFile> out;
+  hdf5::File* file = nullptr;
   std::set<std::string> datasets;
   std::set<std::string> written;  ///< datasets that have values of the mesh already
   int next_array = 0;             ///< lowest number that an array without a name of its own may have
@@ -54,7 +54,6 @@ class Writer {
  private:
   // files
   void open_files();
-  void finish(Hdf5Output& output) const;
   void rename_files();
   [[nodiscard]] std::string mark_of_mesh() const;
   /// Marks the files as belonging to one mesh.
