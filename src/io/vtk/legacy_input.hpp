@@ -5,7 +5,6 @@
 #include "io/vtk/vtk.hpp"
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>

@@ -15,7 +15,6 @@
 #include <map>
 #include <set>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 namespace meshorder::vtk {

@@ -97,43 +97,35 @@ constexpr Codec lzma_codec() {
   return codec;
 }
 
-/// Codecs, libraries and CMake options in the order of VtuEncoding::Compressor.
-constexpr std::array kCodecs{Codec{}, zlib_codec(), lz4_codec(), lzma_codec()};
-constexpr std::array<std::string_view, 4> kLibraries{"", "zlib", "LZ4", "LZMA"};
-constexpr std::array<std::string_view, 4> kOptions{"", "MESHORDER_ZLIB", "MESHORDER_LZ4", "MESHORDER_LZMA"};
+/// A compressor; `greatest_ratio` bounds the ratio of the uncompressed size to the compressed size.
+struct Library {
+  Codec codec;
+  std::string_view name;
+  std::string_view option;
+  std::uint64_t greatest_ratio;
+};
 
-const Codec& codec_of(VtuEncoding::Compressor kind) { return kCodecs[static_cast<std::size_t>(kind)]; }
+/// In the order of VtuEncoding::Compressor.
+constexpr std::array kLibraries{Library{{}, "", "", 1}, Library{zlib_codec(), "zlib", "MESHORDER_ZLIB", 1100},
+                                Library{lz4_codec(), "LZ4", "MESHORDER_LZ4", 300},
+                                Library{lzma_codec(), "LZMA", "MESHORDER_LZMA", 20000}};
+
+const Library& library_of(VtuEncoding::Compressor kind) { return kLibraries[static_cast<std::size_t>(kind)]; }
 
 }  // namespace
 
 bool VtuCompressor::available(VtuEncoding::Compressor kind) {
-  return kind == VtuEncoding::Compressor::none || codec_of(kind).compress != nullptr;
+  return kind == VtuEncoding::Compressor::none || library_of(kind).codec.compress != nullptr;
 }
 
-std::string_view VtuCompressor::library(VtuEncoding::Compressor kind) {
-  return kLibraries[static_cast<std::size_t>(kind)];
-}
-
-std::string_view VtuCompressor::option(VtuEncoding::Compressor kind) {
-  return kOptions[static_cast<std::size_t>(kind)];
-}
-
+std::string_view VtuCompressor::library(VtuEncoding::Compressor kind) { return library_of(kind).name; }
+std::string_view VtuCompressor::option(VtuEncoding::Compressor kind) { return library_of(kind).option; }
 std::uint64_t VtuCompressor::greatest_ratio(VtuEncoding::Compressor kind) {
-  switch (kind) {
-    case VtuEncoding::Compressor::zlib:
-      return 1100;
-    case VtuEncoding::Compressor::lz4:
-      return 300;
-    case VtuEncoding::Compressor::lzma:
-      return 20000;
-    case VtuEncoding::Compressor::none:
-      break;
-  }
-  return 1;
+  return library_of(kind).greatest_ratio;
 }
 
 std::string VtuCompressor::compress(std::span<const char> bytes) const {
-  const Codec& codec = codec_of(kind_);
+  const Codec& codec = library_of(kind_).codec;
   std::string result(codec.bound(bytes.size()), '\0');
   result.resize(codec.compress(bytes, result));
   if (result.empty()) throw std::runtime_error("a block of an array could not be compressed");
@@ -142,7 +134,7 @@ std::string VtuCompressor::compress(std::span<const char> bytes) const {
 
 bool VtuCompressor::uncompress(std::span<const char> bytes, std::span<char> target) const {
   if (bytes.empty() || target.empty()) return target.empty();
-  return codec_of(kind_).uncompress(bytes, target);
+  return library_of(kind_).codec.uncompress(bytes, target);
 }
 
 }  // namespace meshorder::vtk

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "io/vtk/vtk.hpp"
+#include "io/vtu.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -20,7 +20,24 @@ bool is_name_character(char c) {
 
 bool is_blank(std::string_view text) { return text.find_first_not_of(kXmlBlanks) == std::string_view::npos; }
 
-/// Decodes one entity of XML, "lt" or "#65"; returns an empty text if it is not one.
+std::string unescaped(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto semicolon = text[i] == '&' ? text.substr(i, 12).find(';') : std::string_view::npos;
+    const std::string character =
+        semicolon == std::string_view::npos ? "" : entity(text.substr(i + 1, semicolon - 1));
+    if (character.empty()) {
+      result += text[i] == '\n' || text[i] == '\r' || text[i] == '\t' ? ' ' : text[i];  // as XML requires
+    } else {
+      result += character;
+      i += semicolon;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
 std::string entity(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, char>, 5> kNamed{
       {{"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"quot", '"'}, {"apos", '\''}}};
@@ -46,24 +63,6 @@ std::string entity(std::string_view name) {
     bytes += static_cast<char>(0x80U | ((code >> (6U * static_cast<unsigned>(i))) & 0x3FU));
   return bytes;
 }
-
-std::string unescaped(std::string_view text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto semicolon = text[i] == '&' ? text.substr(i, 12).find(';') : std::string_view::npos;
-    const std::string character =
-        semicolon == std::string_view::npos ? "" : entity(text.substr(i + 1, semicolon - 1));
-    if (character.empty()) {
-      result += text[i] == '\n' || text[i] == '\r' || text[i] == '\t' ? ' ' : text[i];  // as XML requires
-    } else {
-      result += character;
-      i += semicolon;
-    }
-  }
-  return result;
-}
-
-}  // namespace
 
 std::string vtu_words(const std::vector<std::uint64_t>& values, const VtuEncoding& encoding) {
   const std::size_t size = encoding.wide_headers ? 8 : 4;

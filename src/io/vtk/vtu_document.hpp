@@ -7,16 +7,17 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace meshorder::vtk {
 
 inline constexpr std::string_view kXmlBlanks = " \t\r\n";
+
+/// Decodes one entity of XML, "lt" or "#65"; returns an empty text if it is not one.
+std::string entity(std::string_view name);
 
 /// Returns the words that precede an array, such as its size, in the byte order of the file.
 std::string vtu_words(const std::vector<std::uint64_t>& values, const VtuEncoding& encoding);

@@ -83,8 +83,7 @@ void ArrayReader::read_attribute(const GridElement& grid, int part, pugi::xml_no
   DataArray array;
   array.association = field.association;
   array.values = reading_.data.read(field.place);
-  const Index rows =
-      on_vertices ? reading_.mesh.vertex_count() : index_size(reading_.rows[static_cast<std::size_t>(part)]);
+  const Index rows = on_vertices ? reading_.mesh.vertex_count() : index_size(reading_.rows[part]);
   const std::size_t values = size_of(array.values);
   if (rows == 0 ? values != 0 : (values == 0 || values % static_cast<std::size_t>(rows) != 0)) {
     throw reading_.document.error(element, fmt::format("the attribute '{}' has {} values", name, values),
@@ -113,18 +112,17 @@ bool ArrayReader::is_label(const Field& field, const DataArray& array) const {
     return false;
   }
   const std::string& dataset = field.place.dataset;
-  return array.name == kLabel ||
-         (field.part > 0 &&
-          (array.name == reading_.layout->parts[static_cast<std::size_t>(field.part)].name ||
-           dataset.starts_with("/MeshTags/") || dataset.starts_with("/MeshValueCollection/")));
+  return array.name == kLabel || (field.part > 0 && (array.name == reading_.layout->parts[field.part].name ||
+                                                     dataset.starts_with("/MeshTags/") ||
+                                                     dataset.starts_with("/MeshValueCollection/")));
 }
 
 void ArrayReader::take_label(const Field& field, DataArray& array) {
-  const std::vector<Index>& rows = reading_.rows[static_cast<std::size_t>(field.part)];
+  const std::vector<Index>& rows = reading_.rows[field.part];
   if (labelled_.size() < reading_.cells.types.size()) labelled_.resize(reading_.cells.types.size(), false);
-  const auto has_label = [&](Index c) { return labelled_[static_cast<std::size_t>(c)]; };
+  const auto has_label = [&](Index c) { return labelled_[c]; };
   if (std::any_of(rows.begin(), rows.end(), has_label)) return;
-  for (const Index c : rows) labelled_[static_cast<std::size_t>(c)] = true;
+  for (const Index c : rows) labelled_[c] = true;
   array.name = kLabel;
 }
 
@@ -150,19 +148,19 @@ void ArrayReader::read_set(int part, pugi::xml_node element) {
   const auto [known, is_new] = known_sets_.try_emplace(key + name, reading_.layout->fields.size());
   if (!is_new) return reading_.layout->fields[known->second].place.repeat(field.place);
   const std::vector<Index> members = reading_.data.read_indices(field.place);
-  const std::vector<Index>& rows = reading_.rows[static_cast<std::size_t>(part)];
+  const std::vector<Index>& rows = reading_.rows[part];
   const Index count = on_vertices ? reading_.mesh.vertex_count() : index_size(rows);
   std::vector<bool> taken(static_cast<std::size_t>(count), false);
   EntitySet& set = reading_.set_of(field);
   for (const Index member : members) {
-    if (member < 0 || member >= count || taken[static_cast<std::size_t>(member)]) {
+    if (member < 0 || member >= count || taken[member]) {
       throw reading_.document.error(
           item,
           fmt::format("the set '{}' names {}{}", name, member, member >= 0 && member < count ? " twice" : ""),
           fmt::format("the Grid has {} to {}", 0, count - 1));
     }
-    taken[static_cast<std::size_t>(member)] = true;
-    set.members.push_back(on_vertices ? static_cast<Index>(member) : rows[static_cast<std::size_t>(member)]);
+    taken[member] = true;
+    set.members.push_back(on_vertices ? static_cast<Index>(member) : rows[member]);
   }
   reading_.layout->fields.push_back(field);
 }
@@ -190,7 +188,7 @@ void ArrayReader::name_pending() {
 
 std::string ArrayReader::add(DataArray array, int part) {
   if (array.association == Association::vertices) return add_growing(std::move(array));
-  const std::vector<Index>& rows = reading_.rows[static_cast<std::size_t>(part)];
+  const std::vector<Index>& rows = reading_.rows[part];
   GrowingArray* const found = array_named(array.name, Association::cells);
   if (found == nullptr || !append_rows(*found, array, rows)) {
     if (index_size(rows) != reading_.mesh.cell_count() || !std::is_sorted(rows.begin(), rows.end()))
@@ -208,16 +206,14 @@ bool ArrayReader::append_rows(GrowingArray& growing, DataArray& array, const std
   if (all.is_dense() || all.components != array.components || !may_join) return false;
   if (growing.has_row.empty()) {
     growing.has_row.assign(reading_.mesh.cells.shapes.size(), false);
-    for (const Index c : all.indices) growing.has_row[static_cast<std::size_t>(c)] = true;
+    for (const Index c : all.indices) growing.has_row[c] = true;
   }
-  if (std::any_of(rows.begin(), rows.end(),
-                  [&](Index c) { return growing.has_row[static_cast<std::size_t>(c)]; }))
-    return false;
+  if (std::any_of(rows.begin(), rows.end(), [&](Index c) { return growing.has_row[c]; })) return false;
   if (!same_type) {
     all.values = vtk::integers_of<std::int64_t>(all.values);
     array.values = vtk::integers_of<std::int64_t>(array.values);
   }
-  for (const Index c : rows) growing.has_row[static_cast<std::size_t>(c)] = true;
+  for (const Index c : rows) growing.has_row[c] = true;
   all.indices.insert(all.indices.end(), rows.begin(), rows.end());
   append_values(all.values, std::move(array.values));
   return true;

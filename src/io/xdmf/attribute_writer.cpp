@@ -103,8 +103,7 @@ void Writer::add_array(const DataArray& array) {
 bool Writer::has_rows(const DataArray& array, const std::vector<Index>& cells) const {
   if (array.is_dense()) return true;
   const std::vector<Index> place = places_in(cells);
-  return std::any_of(array.indices.begin(), array.indices.end(),
-                     [&](Index c) { return place[static_cast<std::size_t>(c)] >= 0; });
+  return std::any_of(array.indices.begin(), array.indices.end(), [&](Index c) { return place[c] >= 0; });
 }
 
 void Writer::add_attribute(int part, const DataArray& array, const std::string& name, const Values& values) {
@@ -140,8 +139,6 @@ std::string Writer::unused_dataset(Hdf5Output& output, int part, const std::stri
   }
 }
 
-pugi::xml_node Writer::grid_of(int part) const {
-  return grids_[layout_.parts[static_cast<std::size_t>(part)].grid];
-}
+pugi::xml_node Writer::grid_of(int part) const { return grids_[layout_.parts[part].grid]; }
 
 }  // namespace meshorder::xdmf

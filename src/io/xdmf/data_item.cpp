@@ -19,7 +19,6 @@
 #include <cstring>
 #include <limits>
 #include <tuple>
-#include <variant>
 
 namespace meshorder::xdmf {
 namespace {

@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/vtk/vtu_document.hpp"
 #include "io/xdmf/document.hpp"
 #include <meshorder/error.hpp>
 
@@ -6,9 +7,7 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstddef>
-#include <cstdint>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -46,15 +45,6 @@ std::size_t end_of_name(std::string_view text, std::size_t from) {
   };
   while (from < text.size() && is_part(text[from])) ++from;
   return from;
-}
-
-std::string utf8(std::uint32_t code) {
-  const auto byte = [](std::uint32_t value) { return static_cast<char>(static_cast<unsigned char>(value)); };
-  const auto rest = [&](unsigned shift) { return byte(0x80U | ((code >> shift) & 0x3FU)); };
-  if (code < 0x80U) return {byte(code)};
-  if (code < 0x800U) return {byte(0xC0U | (code >> 6U)), rest(0)};
-  if (code < 0x10000U) return {byte(0xE0U | (code >> 12U)), rest(6), rest(0)};
-  return {byte(0xF0U | (code >> 18U)), rest(12), rest(6), rest(0)};
 }
 
 class Expansion {
@@ -177,18 +167,13 @@ class Expansion {
       const std::size_t reference = text.find("&#");
       result += text.substr(0, reference);
       if (reference == std::string_view::npos) return result;
-      text.remove_prefix(reference + 2);
-      const bool hexadecimal = text.starts_with('x');
-      if (hexadecimal) text.remove_prefix(1);
-      std::uint32_t code = 0;
-      const auto [end, fault] =
-          std::from_chars(text.data(), text.data() + text.size(), code, hexadecimal ? 16 : 10);
-      const auto digits = static_cast<std::size_t>(end - text.data());
-      if (fault != std::errc{} || digits == text.size() || *end != ';' || code == 0 || code > 0x10FFFF) {
+      text.remove_prefix(reference + 1);
+      const std::size_t end = text.find(';');
+      const std::string character = vtk::entity(text.substr(0, end));
+      if (end == std::string_view::npos || character.empty() || character.front() == '\0')
         fail(at, "an entity has a character that XML does not know", "&#38; is one");
-      }
-      result += utf8(code);
-      text.remove_prefix(digits + 1);
+      result += character;
+      text.remove_prefix(end + 1);
     }
   }
 

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <new>
-#include <type_traits>
 
 namespace meshorder::xdmf {
 namespace {
@@ -19,7 +18,7 @@ namespace {
 bool is_identity(const std::vector<Index>& rows, Index count) {
   if (index_size(rows) != count) return false;
   for (Index i = 0; i < count; ++i) {
-    if (rows[static_cast<std::size_t>(i)] != i) return false;
+    if (rows[i] != i) return false;
   }
   return true;
 }
@@ -89,7 +88,7 @@ int Writer::dimension_of(const Field& field) const {
 }
 
 void Writer::write_topology(const Field& field) {
-  const std::vector<Index>& rows = rows_[static_cast<std::size_t>(field.part)];
+  const std::vector<Index>& rows = rows_[field.part];
   pugi::xml_node topology = element_of(field);
   const bool was_mixed = same_but_for_case(attribute(topology, "TopologyType", "Type"), "Mixed");
   const TopologyType* const type = was_mixed ? nullptr : common_type(rows);
@@ -192,10 +191,10 @@ void Writer::write_set(const Field& field) {
   if (set == nullptr) return remove_element(field);
   const bool on_cells = field.association == Association::cells;
   std::vector<Index> place;
-  if (on_cells) place = places_in(rows_[static_cast<std::size_t>(field.part)]);
+  if (on_cells) place = places_in(rows_[field.part]);
   std::vector<Index> numbers;
   for (const Index member : set->members) {
-    const Index row = on_cells ? place[static_cast<std::size_t>(member)] : member;
+    const Index row = on_cells ? place[member] : member;
     if (row >= 0) numbers.push_back(row);
   }
   put_indices(field.place, numbers, 1);
@@ -233,8 +232,7 @@ void Writer::remove_gone() {
 
 std::vector<Index> Writer::places_in(const std::vector<Index>& rows) const {
   std::vector<Index> place(mesh_.cells.shapes.size(), -1);
-  for (Index r = 0; r < index_size(rows); ++r)
-    place[static_cast<std::size_t>(rows[static_cast<std::size_t>(r)])] = r;
+  for (Index r = 0; r < index_size(rows); ++r) place[rows[r]] = r;
   return place;
 }
 
@@ -244,11 +242,11 @@ std::optional<Values> Writer::values_of(const DataArray& array, Association asso
   const std::vector<Index> row_of = rows_by_item(array, count);
   std::vector<Index> rows_of_cells;
   if (!on_vertices) {
-    const std::vector<Index>& cells = rows_[static_cast<std::size_t>(part)];
+    const std::vector<Index>& cells = rows_[part];
     if (array.is_dense() && !is_identity(cells, count))
       return rows_of_values(array.values, array.components, cells);
     if (!array.is_dense()) {
-      for (const Index c : cells) rows_of_cells.push_back(row_of[static_cast<std::size_t>(c)]);
+      for (const Index c : cells) rows_of_cells.push_back(row_of[c]);
     }
   }
   if (array.is_dense()) return {};

@@ -26,13 +26,11 @@ std::vector<Index> cells_of_dimension(const Mesh& mesh, int wanted) {
 }
 
 /// Returns the cells by dimension, highest first; dimensions without cells are left out.
-std::vector<std::vector<Index>> cells_by_dimension(const Mesh& mesh, std::vector<int>& dimensions) {
+std::vector<std::vector<Index>> cells_by_dimension(const Mesh& mesh) {
   std::vector<std::vector<Index>> cells;
   for (int d = mesh.cells.highest_dimension(); d >= 0; --d) {
     std::vector<Index> of_dimension = cells_of_dimension(mesh, d);
-    if (of_dimension.empty()) continue;
-    dimensions.push_back(d);
-    cells.push_back(std::move(of_dimension));
+    if (!of_dimension.empty()) cells.push_back(std::move(of_dimension));
   }
   return cells;
 }
@@ -51,8 +49,7 @@ XdmfLayout layout_of(const Mesh& mesh, const FilePath& path) {
   const std::string file = layout.stem + ".h5";
   layout.hdf5[file] = hdf5::File::in_memory({}, file).bytes();
   layout.xml = "<?xml version=\"1.0\"?><Xdmf Version=\"3.0\"><Domain>";
-  std::vector<int> dimensions;
-  const std::vector<std::vector<Index>> cells = cells_by_dimension(mesh, dimensions);
+  const std::vector<std::vector<Index>> cells = cells_by_dimension(mesh);
   std::size_t item = 0;
   const auto add_item = [&](Field::Role role, const std::string& dataset, std::size_t alternative, int part) {
     DataPlace place{DataPlace::Format::hdf, item++, file, dataset, alternative};
@@ -65,8 +62,8 @@ XdmfLayout layout_of(const Mesh& mesh, const FilePath& path) {
   constexpr std::size_t kInt32 = 6;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto part = static_cast<int>(i);
-    const int below = dimensions.front() - dimensions[i];
-    const std::string name(kGridNames[static_cast<std::size_t>(below)]);
+    const int below = mesh.cells.highest_dimension() - dimension(mesh.cells.shapes[cells[i].front()]);
+    const std::string name(kGridNames[below]);
     layout.parts.push_back({.name = name, .set = "", .below = below, .grid = i});
     layout.xml += fmt::format("<Grid Name=\"{}\" GridType=\"Uniform\">", name);
     if (i > 0) layout.xml += fmt::format("<Information Name=\"{}\" Value=\"meshorder\"/>", kAdded);
@@ -83,10 +80,7 @@ XdmfLayout layout_of(const Mesh& mesh, const FilePath& path) {
 }
 
 std::vector<std::vector<Index>> cells_of_parts(const Mesh& mesh, const XdmfLayout& layout) {
-  if (layout.is_made) {
-    std::vector<int> dimensions;
-    return cells_by_dimension(mesh, dimensions);
-  }
+  if (layout.is_made) return cells_by_dimension(mesh);
   std::vector<std::vector<Index>> cells(layout.parts.size());
   std::vector<bool> taken(mesh.cells.shapes.size(), false);
   const NamedParts parts(mesh);
@@ -100,20 +94,19 @@ std::vector<std::vector<Index>> cells_of_parts(const Mesh& mesh, const XdmfLayou
     }
     if (layout.parts[p].is_ascending) std::sort(cells[p].begin(), cells[p].end());
     if (!layout.parts[p].has_own_cells) continue;
-    for (const Index c : cells[p]) taken[static_cast<std::size_t>(c)] = true;
+    for (const Index c : cells[p]) taken[c] = true;
   }
   for (Index c = 0; c < mesh.cell_count(); ++c) {
-    if (!taken[static_cast<std::size_t>(c)]) cells.front().push_back(c);
+    if (!taken[c]) cells.front().push_back(c);
   }
   return cells;
 }
 
 Permutation places(const Mesh& mesh, std::vector<Index>& blocks) {
-  std::vector<int> dimensions;
   std::vector<Index> new_to_old;
   new_to_old.reserve(mesh.cells.shapes.size());
   blocks.clear();
-  for (const std::vector<Index>& cells : cells_by_dimension(mesh, dimensions)) {
+  for (const std::vector<Index>& cells : cells_by_dimension(mesh)) {
     blocks.push_back(index_size(new_to_old));
     new_to_old.insert(new_to_old.end(), cells.begin(), cells.end());
   }

@@ -15,7 +15,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <type_traits>
 #include <utility>
 
 // Reads Grids and their points, and keeps the contents of the files besides the mesh.
@@ -234,7 +233,7 @@ class XdmfReader {
     if (count % components != 0 || rows > kMaxIndex) return false;
     const auto known = std::find(raw_.names.begin(), raw_.names.end(), place.dataset);
     if (known != raw_.names.end()) {
-      const FilePart& part = raw_.parts[static_cast<std::size_t>(known - raw_.names.begin())];
+      const FilePart& part = raw_.parts[known - raw_.names.begin()];
       return part.role == role && part.association == association;
     }
     FilePart part{role, association, static_cast<std::uint8_t>(place.alternative), components, rows};

@@ -7,7 +7,6 @@
 #include "io/xdmf/xdmf.hpp"
 
 #include <cstddef>
-#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>

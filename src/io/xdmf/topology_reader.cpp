@@ -175,7 +175,7 @@ FileCells cells_of(Reading& reading, pugi::xml_node topology, pugi::xml_node ite
   }
   piece.types.assign(static_cast<std::size_t>(cells), static_cast<std::uint8_t>(vtk_type(known, nodes)));
   resize_large(piece.offsets, static_cast<std::size_t>(cells) + 1);
-  for (std::int64_t c = 0; c <= cells; ++c) piece.offsets[static_cast<std::size_t>(c)] = c * nodes;
+  for (std::int64_t c = 0; c <= cells; ++c) piece.offsets[c] = c * nodes;
   piece.vertices = std::move(numbers);
   check_vertices(reading, item, piece, base);
   return piece;
@@ -190,7 +190,7 @@ std::optional<std::vector<Index>> known_cells(const Reading& reading, const File
     if (!types[type]) return {};
   }
   const auto is_same = [&](Index old, Index c) {
-    return reading.cells.types[static_cast<std::size_t>(old)] == piece.types[static_cast<std::size_t>(c)] &&
+    return reading.cells.types[old] == piece.types[c] &&
            std::ranges::equal(vertices_of(reading.cells, old), vertices_of(piece, c));
   };
   bool in_place = count <= index_size(reading.cells.types);
@@ -208,22 +208,22 @@ std::optional<std::vector<Index>> known_cells(const Reading& reading, const File
     const auto [begin, end] = places.equal_range(hash_of(wanted));
     const auto place = std::find_if(begin, end, [&](const auto& candidate) {
       const auto old = static_cast<std::size_t>(candidate.second);
-      return !taken[old] && reading.cells.types[old] == piece.types[static_cast<std::size_t>(c)] &&
+      return !taken[old] && reading.cells.types[old] == piece.types[c] &&
              sorted(vertices_of(reading.cells, candidate.second)) == wanted;
     });
     if (place == end) return {};
-    taken[static_cast<std::size_t>(place->second)] = true;
+    taken[place->second] = true;
     found.push_back(place->second);
   }
   return found;
 }
 
 bool is_part(const Reading& reading, int part, const FileCells& piece) {
-  const std::vector<Index>& rows = reading.rows[static_cast<std::size_t>(part)];
+  const std::vector<Index>& rows = reading.rows[part];
   if (index_size(rows) != index_size(piece.types)) return false;
   for (Index c = 0; c < index_size(rows); ++c) {
-    const auto old = static_cast<std::size_t>(rows[static_cast<std::size_t>(c)]);
-    if (reading.cells.types[old] != piece.types[static_cast<std::size_t>(c)] ||
+    const auto old = static_cast<std::size_t>(rows[c]);
+    if (reading.cells.types[old] != piece.types[c] ||
         !std::ranges::equal(vertices_of(reading.cells, static_cast<Index>(old)), vertices_of(piece, c))) {
       return false;
     }

@@ -75,17 +75,9 @@ const TopologyType* topology_type(std::int64_t number) {
 }
 
 const TopologyType* topology_type_of(Shape shape, int vertices) {
-  switch (shape) {
-    case Shape::poly_vertex:
-      return kTopologyTypes.data();
-    case Shape::polyline:
-      return &kTopologyTypes[1];
-    case Shape::line:
-      if (vertices == 2) return &kTopologyTypes[1];
-      break;
-    default:
-      break;
-  }
+  if (shape == Shape::poly_vertex) return topology_type(std::int64_t{kPolyvertex});
+  if (shape == Shape::polyline || (shape == Shape::line && vertices == 2))
+    return topology_type(std::int64_t{kPolyline});
   const auto found =
       std::find_if(kTopologyTypes.begin(), kTopologyTypes.end(), [&](const TopologyType& type) {
         const bool any = type.nodes == 0 && shape != Shape::line;

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <new>
 #include <type_traits>
 
 namespace meshorder::xdmf {
