@@ -12,6 +12,7 @@
 #include <meshorder/error.hpp>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iterator>
 #include <utility>
@@ -21,6 +22,15 @@ namespace {
 
 using distributed::Communicator;
 using distributed::GridRows;
+
+/// Opens the files of the pieces at the root; returns their paths and their names in messages.
+template <class Outputs>
+std::array<std::vector<std::string>, 2> opened(const Communicator& communicator,
+                                               std::optional<Outputs>& outputs, Index parts) {
+  std::vector<std::string> paths =
+      communicator.broadcast(communicator.at_root([&] { return outputs->open(parts); }));
+  return {std::move(paths), communicator.broadcast(outputs ? outputs->names() : std::vector<std::string>{})};
+}
 
 /// Adds notes that are not there yet: two writers may report the same loss.
 void add_new(const Notes& found, Notes& notes) {
@@ -146,10 +156,7 @@ void OrderOutputs::write_nemesis(const MeshToOrder& whole, const distributed::Di
 
 void OrderOutputs::write_nemesis(distributed::MovedPart moved, const distributed::ExodusSlices& slices,
                                  const distributed::DistributedReport& report) {
-  const std::vector<std::string> paths =
-      communicator_.broadcast(communicator_.at_root([&] { return nemesis_->open(report.parts); }));
-  const std::vector<std::string> names =
-      communicator_.broadcast(nemesis_ ? nemesis_->names() : std::vector<std::string>{});
+  const auto [paths, names] = opened(communicator_, nemesis_, report.parts);
   pieces_report_.ghost_vertices = distributed::write_nemesis_pieces(
       communicator_, std::move(moved), slices.block_ends(), report.part_starts, paths, names);
   communicator_.at_root([&] { nemesis_->add_to(set_); });
@@ -178,10 +185,7 @@ void OrderOutputs::write_pieces(const GridRows& grid, const distributed::Distrib
     });
     return;
   }
-  const std::vector<std::string> paths =
-      communicator_.broadcast(communicator_.at_root([&] { return pieces_->open(report.parts); }));
-  const std::vector<std::string> names =
-      communicator_.broadcast(pieces_ ? pieces_->names() : std::vector<std::string>{});
+  const auto [paths, names] = opened(communicator_, pieces_, report.parts);
   pieces_report_ = distributed::write_pieces(communicator_, grid, schema, report.part_starts,
                                              files_.ghosts > 0, paths, names);
   communicator_.at_root([&] {

@@ -5,7 +5,6 @@
 #include "distributed/comm/rows.hpp"
 #include "distributed/files/piece_contents.hpp"
 #include "distributed/order/partition.hpp"
-#include "io/kept_cells.hpp"
 #include "mesh/values.hpp"
 
 #include <algorithm>
@@ -28,9 +27,7 @@ Incidence items_of_parts(Index parts, Index items, const ForParts& for_parts) {
   result.vertices.resize(static_cast<std::size_t>(result.offsets.back()));
   std::vector<Offset> next(result.offsets.begin(), result.offsets.end() - 1);
   for (Index item = 0; item < items; ++item) {
-    for_parts(item, [&](Index part) {
-      result.vertices[static_cast<std::size_t>(next[static_cast<std::size_t>(part)]++)] = item;
-    });
+    for_parts(item, [&](Index part) { result.vertices[next[part]++] = item; });
   }
   return result;
 }
@@ -55,14 +52,12 @@ Incidence vertices_of_parts(const Mesh& mesh, const Incidence& cells,
   for (Index part = 0; part < cells.size(); ++part) {
     for (const Index cell : cells[part]) {
       for (const Index vertex : mesh.cells[cell]) {
-        if (std::exchange(last[static_cast<std::size_t>(vertex)], part) != part)
-          found[static_cast<std::size_t>(part)].push_back(vertex);
+        if (std::exchange(last[vertex], part) != part) found[part].push_back(vertex);
       }
     }
   }
   for (Index vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
-    if (last[static_cast<std::size_t>(vertex)] < 0)
-      found[static_cast<std::size_t>(part_of(vertex, part_starts))].push_back(vertex);
+    if (last[vertex] < 0) found[part_of(vertex, part_starts)].push_back(vertex);
   }
   Incidence result;
   result.vertex_count = mesh.vertex_count();
@@ -94,7 +89,7 @@ void MeshParts::find_own(const Mesh& mesh, const std::vector<GlobalIndex>& part_
   parts_of_vertices_ = transposed(vertices_);
   for (Index part = 0; part < parts; ++part) {
     // move the own vertices, which are a range of numbers, to the front
-    const auto begin = vertices_.vertices.begin() + vertices_.offsets[static_cast<std::size_t>(part)];
+    const auto begin = vertices_.vertices.begin() + vertices_.offsets[part];
     const auto end = vertices_.vertices.begin() + vertices_.offsets[static_cast<std::size_t>(part) + 1];
     const auto is_own = [&](Index vertex) { return part_of(vertex, part_starts) == part; };
     const auto own = std::find_if(begin, end, is_own);
@@ -111,19 +106,15 @@ void MeshParts::find_sharing_parts(const Communicator& communicator, const Share
     GlobalIndex vertex;
     Index part;
   };
-  const Parcels<Letter> sent = communicator.together([&] {
-    // numbers ascend, so ranks do too
-    Parcels<Letter> letters;
-    letters.starts.assign(static_cast<std::size_t>(communicator.size()) + 1, 0);
+  const std::vector<Letter> letters = communicator.together([&] {
+    std::vector<Letter> result;
     for (Index v = 0; v < index_size(numbers.vertices); ++v) {
-      const GlobalIndex vertex = numbers.vertices[static_cast<std::size_t>(v)];
-      for (const Index part : parts_with(v)) letters.values.push_back({vertex, part});
-      letters.starts[static_cast<std::size_t>(numbers.layout.owner(vertex)) + 1] += std::ssize(parts_with(v));
+      for (const Index part : parts_with(v)) result.push_back({numbers.vertices[v], part});
     }
-    std::partial_sum(letters.starts.begin(), letters.starts.end(), letters.starts.begin());
-    return letters;
+    return result;
   });
-  std::vector<Letter> asked = communicator.exchange(sent).values;
+  std::vector<Letter> asked = sent_to_ranks(
+      communicator, letters, [&](const Letter& letter) { return numbers.layout.owner(letter.vertex); });
   Rows shared;  // each row is a vertex followed by its parts
   std::vector<Dispatch> dispatches;
   communicator.together([&] {
@@ -152,7 +143,7 @@ void MeshParts::find_sharing_parts(const Communicator& communicator, const Share
     all.vertex_count = parts_of_vertices_.vertex_count;
     Offset row = 0;
     for (Index v = 0; v < index_size(numbers.vertices); ++v) {
-      if (row < told.size() && told[row].front() == numbers.vertices[static_cast<std::size_t>(v)]) {
+      if (row < told.size() && told[row].front() == numbers.vertices[v]) {
         for (const GlobalIndex part : told[row++].subspan(1))
           all.vertices.push_back(static_cast<Index>(part));
       } else {
@@ -172,7 +163,7 @@ PartCutter::PartCutter(const Mesh& mesh, const MeshParts& parts)
       cell_places_(static_cast<std::size_t>(mesh.cell_count()), 0) {
   const auto shared_out = [&](Association association, const std::vector<Index>& numbers) {
     return items_of_parts(parts.size(), index_size(numbers), [&](Index row, const auto& take) {
-      const Index number = numbers[static_cast<std::size_t>(row)];
+      const Index number = numbers[row];
       if (association == Association::cells) return take(parts.part_with(number));
       for (const Index part : parts.parts_with(number)) take(part);
     });
@@ -188,15 +179,13 @@ Mesh PartCutter::cut(Index part) {
   piece.format = mesh_.format;
   piece.format_metadata = mesh_.format_metadata;
   const auto place_all = [](std::span<const Index> numbers, std::vector<Index>& places) {
-    for (std::size_t k = 0; k < numbers.size(); ++k)
-      places[static_cast<std::size_t>(numbers[k])] = static_cast<Index>(k);
+    for (std::size_t k = 0; k < numbers.size(); ++k) places[numbers[k]] = static_cast<Index>(k);
   };
   place_all(parts_.vertices(part), vertex_places_);
   place_all(parts_.cells(part), cell_places_);
   for (const Index vertex : parts_.vertices(part)) {
-    piece.points.push_back(mesh_.points[static_cast<std::size_t>(vertex)]);
-    if (!mesh_.vertex_ids.empty())
-      piece.vertex_ids.push_back(mesh_.vertex_ids[static_cast<std::size_t>(vertex)]);
+    piece.points.push_back(mesh_.points[vertex]);
+    if (!mesh_.vertex_ids.empty()) piece.vertex_ids.push_back(mesh_.vertex_ids[vertex]);
   }
   cut_cells(part, piece);
   cut_data(part, piece);
@@ -208,15 +197,14 @@ std::vector<Index> PartCutter::placed(Association association, std::span<const I
   const std::vector<Index>& places = association == Association::vertices ? vertex_places_ : cell_places_;
   std::vector<Index> result(numbers.size());
   std::transform(numbers.begin(), numbers.end(), result.begin(),
-                 [&](Index number) { return places[static_cast<std::size_t>(number)]; });
+                 [&](Index number) { return places[number]; });
   return result;
 }
 
 void PartCutter::cut_cells(Index part, Mesh& piece) const {
   for (const Index cell : parts_.cells(part)) {
-    piece.cells.push_back(mesh_.cells.shapes[static_cast<std::size_t>(cell)],
-                          placed(Association::vertices, mesh_.cells[cell]));
-    if (!mesh_.cell_ids.empty()) piece.cell_ids.push_back(mesh_.cell_ids[static_cast<std::size_t>(cell)]);
+    piece.cells.push_back(mesh_.cells.shapes[cell], placed(Association::vertices, mesh_.cells[cell]));
+    if (!mesh_.cell_ids.empty()) piece.cell_ids.push_back(mesh_.cell_ids[cell]);
   }
 }
 
@@ -230,7 +218,7 @@ void PartCutter::cut_data(Index part, Mesh& piece) const {
     cut.values = rows_of_values(array.values, array.components, rows);
     if (!array.is_dense()) {
       std::vector<Index> numbers;
-      for (const Index row : rows) numbers.push_back(array.indices[static_cast<std::size_t>(row)]);
+      for (const Index row : rows) numbers.push_back(array.indices[row]);
       cut.indices = placed(array.association, numbers);
     }
     piece.data.push_back(std::move(cut));
@@ -241,8 +229,7 @@ void PartCutter::cut_sets(Index part, Mesh& piece) const {
   for (std::size_t s = 0; s < mesh_.sets.size(); ++s) {
     const EntitySet& set = mesh_.sets[s];
     std::vector<Index> numbers;
-    for (const Index place : members_[s][part])
-      numbers.push_back(set.members[static_cast<std::size_t>(place)]);
+    for (const Index place : members_[s][part]) numbers.push_back(set.members[place]);
     piece.sets.push_back({set.name, set.association, placed(set.association, numbers)});
   }
 }

@@ -16,9 +16,7 @@
 #include <numeric>
 #include <optional>
 #include <span>
-#include <type_traits>
 #include <utility>
-#include <variant>
 
 namespace meshorder::distributed {
 namespace {
@@ -29,12 +27,9 @@ constexpr std::size_t kId = 8;
 
 /// Returns numbers of a type from their bytes.
 Values values_of(const std::vector<std::byte>& bytes, std::size_t type) {
-  return values_of_type(type, [&](auto& numbers) {
-    using Number = typename std::decay_t<decltype(numbers)>::value_type;
-    if constexpr (std::is_arithmetic_v<Number>) {
-      numbers.resize(bytes.size() / sizeof(Number));
-      std::memcpy(numbers.data(), bytes.data(), bytes.size());
-    }
+  return numbers_of_type(type, [&]<class Number>(std::vector<Number>& numbers) {
+    numbers.resize(bytes.size() / sizeof(Number));
+    std::memcpy(numbers.data(), bytes.data(), bytes.size());
   });
 }
 
@@ -95,22 +90,19 @@ class ShareMaker {
         communicator_.together([&] { return NumberSet(cells.entries).numbers(); });
     const Halo asked(communicator_, layout, used);
     const Layout ranks = ranks_of_parts(index_size(part_starts_) - 1, communicator_.size());
-    const Parcels<GlobalIndex> unused = communicator_.together([&] {
+    const std::vector<GlobalIndex> unused = communicator_.together([&] {
       const GlobalIndex first = layout.begin(communicator_.rank());
-      const auto count = static_cast<std::size_t>(layout.size(communicator_.rank()));
-      std::vector<char> is_used(count, 0);
-      for (const GlobalIndex vertex : asked.asked_of_this_rank())
-        is_used[static_cast<std::size_t>(vertex - first)] = 1;
+      std::vector<char> is_used(static_cast<std::size_t>(layout.size(communicator_.rank())), 0);
+      for (const GlobalIndex vertex : asked.asked_of_this_rank()) is_used[vertex - first] = 1;
       std::vector<GlobalIndex> found;
-      for (std::size_t v = 0; v < count; ++v) {
+      for (std::size_t v = 0; v < is_used.size(); ++v) {
         if (is_used[v] == 0) found.push_back(first + static_cast<GlobalIndex>(v));
       }
-      return parcels_by_rank(
-          found.size(), communicator_.size(),
-          [&](std::size_t k) { return ranks.owner(part_of(found[k], part_starts_)); },
-          [&](std::size_t k) { return found[k]; });
+      return found;
     });
-    const std::vector<GlobalIndex> more = communicator_.exchange(unused).values;
+    const std::vector<GlobalIndex> more = sent_to_ranks(communicator_, unused, [&](GlobalIndex vertex) {
+      return ranks.owner(part_of(vertex, part_starts_));
+    });
     communicator_.together([&] {
       share_.numbers.vertices.resize(used.size() + more.size());
       std::merge(used.begin(), used.end(), more.begin(), more.end(), share_.numbers.vertices.begin());
@@ -123,7 +115,7 @@ class ShareMaker {
       vertices.clear();
       for (const GlobalIndex vertex : rows[c])
         vertices.push_back(static_cast<Index>(vertices_->position(vertex)));
-      share_.mesh.cells.push_back(shapes[static_cast<std::size_t>(c)], vertices);
+      share_.mesh.cells.push_back(shapes[c], vertices);
     }
   }
 
@@ -148,7 +140,7 @@ class ShareMaker {
       std::vector<std::int32_t> result(static_cast<std::size_t>(moved_.layout(of).size(communicator_.rank())),
                                        0);
       for (std::size_t k = 0; k < members.size(); ++k)
-        result[static_cast<std::size_t>(members[k])] = entries.empty() ? 1 : entries[k] + 1;
+        result[members[k]] = entries.empty() ? 1 : entries[k] + 1;
       return result;
     });
     const std::vector<std::int32_t> own = fetched(of, marks, kPlaceInList);

@@ -97,7 +97,7 @@ class PartGrid {
     std::vector<GlobalIndex> places;
     places.reserve(members.members.size());
     for (const Index member : members.members)
-      places.push_back(moved_.new_places(members.association)[static_cast<std::size_t>(member)]);
+      places.push_back(moved_.new_places(members.association)[member]);
     std::vector<GlobalIndex> listed = delivered<GlobalIndex>(communicator_, list, entries, places, kNone);
 
     struct PlacesInList {
@@ -118,7 +118,7 @@ class PartGrid {
     bool ascends = true;
     const std::vector<PlacesInList> all = communicator_.gathered(own);
     for (int rank = 0; rank < communicator_.size(); ++rank) {
-      const PlacesInList& found = all[static_cast<std::size_t>(rank)];
+      const PlacesInList& found = all[rank];
       if (rank < communicator_.rank()) before += found.members;
       ascends = ascends && found.ascends && (found.members == 0 || found.first > last);
       if (found.members > 0) last = found.last;
@@ -165,8 +165,7 @@ class PartGrid {
     const std::vector<Index>& members = moved_.part().mesh.sets[array.number].members;
     const GlobalIndex count = moved_.layout(array.association).size(communicator_.rank());
     std::vector<std::int32_t> marks(static_cast<std::size_t>(count), 0);
-    for (std::size_t k = 0; k < members.size(); ++k)
-      marks[static_cast<std::size_t>(members[k])] = ranks.empty() ? 1 : ranks[k];
+    for (std::size_t k = 0; k < members.size(); ++k) marks[members[k]] = ranks.empty() ? 1 : ranks[k];
     return bytes_of(marks, array.type);
   }
 

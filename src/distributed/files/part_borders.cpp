@@ -53,12 +53,10 @@ std::vector<Candidate> candidates(const Mesh& mesh, const ShareNumbers& numbers,
     const auto& facets = facets_of(mesh.cells.shapes[c], mesh.cells.vertex_count(c));
     for (std::size_t f = 0; f < facets.size(); ++f) {
       if (facets[f].size() < 2 || !is_shared(parts, cell, facets[f])) continue;
-      Candidate candidate{
-          {}, numbers.cells[static_cast<std::size_t>(c)], parts.part_with(c), static_cast<int>(f)};
+      Candidate candidate{{}, numbers.cells[c], parts.part_with(c), static_cast<int>(f)};
       const std::array<Index, 4> corners = sorted_corners(cell, facets[f]);
-      std::transform(corners.begin(), corners.end(), candidate.corners.begin(), [&](Index corner) {
-        return corner < 0 ? GlobalIndex{-1} : numbers.vertices[static_cast<std::size_t>(corner)];
-      });
+      std::transform(corners.begin(), corners.end(), candidate.corners.begin(),
+                     [&](Index corner) { return corner < 0 ? GlobalIndex{-1} : numbers.vertices[corner]; });
       found.push_back(candidate);
     }
   }
@@ -78,20 +76,6 @@ void for_pairs(std::vector<Candidate>& facets, const Take& take) {
       }
     }
   }
-}
-
-/// Sends values to ranks. Returns the values that this rank receives, sorted by sending rank; values of one
-/// rank keep their sequence.
-template <class T, class RankOf>
-std::vector<T> sent_to_ranks(const Communicator& communicator, const std::vector<T>& values,
-                             const RankOf& rank_of) {
-  return communicator
-      .exchange(communicator.together([&] {
-        return parcels_by_rank(
-            values.size(), communicator.size(), [&](std::size_t k) { return rank_of(values[k]); },
-            [&](std::size_t k) { return values[k]; });
-      }))
-      .values;
 }
 
 }  // namespace
@@ -116,7 +100,7 @@ std::vector<std::vector<BorderFacet>> facets_between(const Communicator& communi
     std::vector<std::vector<BorderFacet>> result(static_cast<std::size_t>(parts.size()));
     for (const Match& match : own) {
       const auto cell = std::lower_bound(numbers.cells.begin(), numbers.cells.end(), match.cell);
-      result[static_cast<std::size_t>(match.part)].push_back(
+      result[match.part].push_back(
           {match.other, static_cast<Index>(cell - numbers.cells.begin()), match.facet});
     }
     for (std::vector<BorderFacet>& of_part : result) {

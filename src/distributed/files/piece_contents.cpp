@@ -116,17 +116,16 @@ std::vector<PieceContents> contents_of_pieces(const Communicator& communicator, 
       const Index owner = parts.back();
       if (!with_ghosts) parts = {owner};
       for (const Index part : parts) {
-        if (part >= first && part < first + own)
-          of_pieces[static_cast<std::size_t>(part - first)].push_back({owner, row});
+        if (part >= first && part < first + own) of_pieces[part - first].push_back({owner, row});
       }
     }
     std::vector<PieceContents> pieces;
     for (Index part = first; part < first + own; ++part) {
-      std::vector<CellOfPiece>& of_piece = of_pieces[static_cast<std::size_t>(part - first)];
+      std::vector<CellOfPiece>& of_piece = of_pieces[part - first];
       sort_own_first(of_piece, part);
       const GlobalIndex end =
           part + 1 == part_count ? vertex_count : part_starts[static_cast<std::size_t>(part) + 1];
-      pieces.push_back(piece_of(part, part_starts[static_cast<std::size_t>(part)], end, rows, of_piece));
+      pieces.push_back(piece_of(part, part_starts[part], end, rows, of_piece));
       of_piece = {};
     }
     return pieces;

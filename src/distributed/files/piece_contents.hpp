@@ -31,6 +31,20 @@ struct PieceContents {
 /// Returns the parts of each rank: ranges whose sizes differ by at most one.
 [[nodiscard]] inline Layout ranks_of_parts(Index parts, int ranks) { return Layout::even(parts, ranks); }
 
+/// Sends values to ranks. Returns the values that this rank receives, sorted by sending rank; values of one
+/// rank keep their sequence.
+template <class T, class RankOf>
+std::vector<T> sent_to_ranks(const Communicator& communicator, const std::vector<T>& values,
+                             const RankOf& rank_of) {
+  return communicator
+      .exchange(communicator.together([&] {
+        return parcels_by_rank(
+            values.size(), communicator.size(), [&](std::size_t k) { return rank_of(values[k]); },
+            [&](std::size_t k) { return values[k]; });
+      }))
+      .values;
+}
+
 /// Finds the contents of the pieces of this rank's parts. A cell is in the part of its largest vertex, and is
 /// a ghost in the parts of its other vertices. Every rank has to call it. O(entries · log parts).
 ///

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "distributed/comm/layout.hpp"
-#include "distributed/comm/rows.hpp"
 #include "io/file_layout.hpp"
 #include "io/vtk/vtk.hpp"
 

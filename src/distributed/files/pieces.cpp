@@ -52,7 +52,7 @@ std::vector<std::byte> spelt_out(const std::vector<std::byte>& places,
   for (std::size_t at = 0; at < places.size(); at += sizeof(std::int32_t)) {
     std::int32_t place = 0;
     std::memcpy(&place, places.data() + at, sizeof(place));
-    const std::string& text = texts[static_cast<std::size_t>(place)];
+    const std::string& text = texts[place];
     const auto bytes = std::as_bytes(std::span(text.c_str(), text.size() + 1));
     result.insert(result.end(), bytes.begin(), bytes.end());
   }
