@@ -39,11 +39,6 @@ std::string ArrayReader::add_growing(DataArray array) {
   return arrays_.back().array.name;
 }
 
-ArrayReader::GrowingArray* ArrayReader::array_named(const std::string& name, Association association) {
-  const auto found = place_of_array_.find({association, name});
-  return found == place_of_array_.end() ? nullptr : &arrays_[found->second];
-}
-
 std::string ArrayReader::name_of(pugi::xml_node element) const {
   std::string name = element.attribute("Name").value();
   if (name.empty())
@@ -166,14 +161,6 @@ void ArrayReader::read_set(int part, pugi::xml_node element) {
 }
 
 void ArrayReader::finish() {
-  name_pending();
-  for (GrowingArray& growing : arrays_) {
-    make_dense(growing.array, reading_.mesh.cell_count());
-    vtk::add_array(reading_.mesh, std::move(growing.array));
-  }
-}
-
-void ArrayReader::name_pending() {
   std::map<std::tuple<std::string, Association, int>, int> counts;
   for (const Pending& pending : pending_)
     ++counts[{pending.array.name, pending.array.association, pending.grid.series}];
@@ -184,13 +171,17 @@ void ArrayReader::name_pending() {
     pending.field.name = add(std::move(pending.array), pending.field.part);
     reading_.layout->fields.push_back(std::move(pending.field));
   }
+  for (GrowingArray& growing : arrays_) {
+    make_dense(growing.array, reading_.mesh.cell_count());
+    vtk::add_array(reading_.mesh, std::move(growing.array));
+  }
 }
 
 std::string ArrayReader::add(DataArray array, int part) {
   if (array.association == Association::vertices) return add_growing(std::move(array));
   const std::vector<Index>& rows = reading_.rows[part];
-  GrowingArray* const found = array_named(array.name, Association::cells);
-  if (found == nullptr || !append_rows(*found, array, rows)) {
+  const auto found = place_of_array_.find({Association::cells, array.name});
+  if (found == place_of_array_.end() || !append_rows(arrays_[found->second], array, rows)) {
     if (index_size(rows) != reading_.mesh.cell_count() || !std::is_sorted(rows.begin(), rows.end()))
       array.indices = rows;
     return add_growing(std::move(array));

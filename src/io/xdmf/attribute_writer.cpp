@@ -76,16 +76,12 @@ void Writer::add_ids(const std::vector<std::int64_t>& ids, const char* name, Ass
   add_array({.name = name, .association = association, .values = ids});
 }
 
-std::string Writer::unused_name(const DataArray& array) {
-  std::string name = names_[array.association].take(array.name.empty() ? "array" : xml_text(array.name));
-  note_renamed_array(array, name, notes_);
-  return name;
-}
-
 void Writer::add_array(const DataArray& array) {
   if (are_texts(array.values)) return note_array_unsupported(array, "XDMF", notes_);
   note_component_names_unsupported(array, "XDMF", notes_);
-  const std::string name = unused_name(array);
+  const std::string name =
+      names_[array.association].take(array.name.empty() ? "array" : xml_text(array.name));
+  note_renamed_array(array, name, notes_);
   if (array.association == Association::vertices) {
     const std::optional<Values> values = values_of(array, array.association, 0);
     add_attribute(0, array, name, values ? *values : array.values);
@@ -107,7 +103,8 @@ bool Writer::has_rows(const DataArray& array, const std::vector<Index>& cells) c
 }
 
 void Writer::add_attribute(int part, const DataArray& array, const std::string& name, const Values& values) {
-  pugi::xml_node element = grid_of(part).append_child("Attribute");
+  // of a series, the first Grid
+  pugi::xml_node element = grids_[layout_.parts[part].grid].append_child("Attribute");
   set_attribute(element, "Name", name);
   set_attribute(element, "AttributeType", attribute_type(array.components));
   set_attribute(element, "Center", array.association == Association::vertices ? "Node" : "Cell");
@@ -138,7 +135,5 @@ std::string Writer::unused_dataset(Hdf5Output& output, int part, const std::stri
     if (take(path)) return path;
   }
 }
-
-pugi::xml_node Writer::grid_of(int part) const { return grids_[layout_.parts[part].grid]; }
 
 }  // namespace meshorder::xdmf

@@ -69,6 +69,77 @@ class ElementText {
   std::string joined_;  // the pieces joined, if there are several
 };
 
+std::vector<std::uint64_t> shape_of(const Document& document, pugi::xml_node item) {
+  std::vector<std::uint64_t> shape;
+  const std::string dimensions = attribute(item, "Dimensions");
+  std::string_view rest = dimensions;
+  for (std::string_view word = next_word(rest, kBlanksOfXml); !word.empty();
+       word = next_word(rest, kBlanksOfXml)) {
+    std::uint64_t size = 0;
+    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), size);
+    if (code != std::errc{} || end != word.data() + word.size()) {
+      throw document.error(item, fmt::format("Dimensions is '{}'", dimensions.substr(0, 40)),
+                           "whole numbers, such as 100 3, are needed");
+    }
+    shape.push_back(size);
+  }
+  if (shape.empty()) {
+    throw document.error(item, "the DataItem has no Dimensions", "Dimensions=\"100 3\" is needed");
+  }
+  return shape;
+}
+
+/// Returns the number type of values in XML or in a binary file, as an alternative of Values.
+std::size_t alternative_of(const Document& document, pugi::xml_node item) {
+  const std::string type = attribute(item, "NumberType", "DataType");
+  const std::string precision = attribute(item, "Precision");
+  const auto found = std::find_if(kNumberTypes.begin(), kNumberTypes.end(), [&](const NumberType& known) {
+    if (!same_but_for_case(known.name, type.empty() ? "Float" : type)) return false;
+    const bool usual = known.precision == 4 || known.name.ends_with("Char") || known.name.ends_with("Short");
+    return precision.empty() ? usual : std::to_string(known.precision) == precision;
+  });
+  if (found == kNumberTypes.end()) {
+    throw document.error(item, fmt::format("the numbers are '{}' of {} bytes", type, precision),
+                         "Float, Int, UInt, Char and UChar are understood");
+  }
+  return found->alternative;
+}
+
+/// Sets where the values of a DataItem are in a binary file.
+void find_bytes(const Document& document, pugi::xml_node item, DataPlace& place) {
+  place.file = trimmed_blanks(ElementText(item).view());
+  const std::string order = attribute(item, "Endian");
+  if (same_but_for_case(order, "Big")) place.order = std::endian::big;
+  if (same_but_for_case(order, "Little")) place.order = std::endian::little;
+  const std::string compression = attribute(item, "Compression");
+  if (!compression.empty() && !same_but_for_case(compression, "Raw")) {
+    throw document.error(item, fmt::format("the binary file is compressed ({})", compression.substr(0, 40)),
+                         "write it without Compression");
+  }
+  place.seek = item.attribute("Seek").as_ullong(0);
+}
+
+/// Throws InputError if the XML gives a checksum and the values of a plain binary file have another checksum.
+template <class Number>
+void check_sum(const Document& document, const DataPlace& place, pugi::xml_node item,
+               const std::vector<Number>& numbers) {
+  const std::string_view expected = item.attribute(kValueMark).value();
+  if (expected.empty()) return;
+  Checksum sum;
+  sum.add_all(numbers);
+  if (expected == mark_of(sum.value())) return;
+  throw NotTogether(document.error(
+      item, fmt::format("'{}' was not written together with this file: its checksum differs", place.file),
+      fmt::format("give the files of one mesh, or remove the attribute {} if they belong together",
+                  kValueMark)));
+}
+
+/// Throws InputError if allocating `bytes` for values would exceed the limit on memory.
+void claim(const Document& document, pugi::xml_node item, std::uint64_t bytes) {
+  const std::string fault = refused_claim(bytes, "the DataItem");
+  if (!fault.empty()) throw document.error(item, fault, kClaimRemedy);
+}
+
 }  // namespace
 
 std::pair<std::string, int> number_type_of(std::size_t alternative) {
@@ -108,7 +179,7 @@ DataPlace DataReader::place_of(pugi::xml_node item) {
   DataPlace place;
   place.item = document_.number(item);
   place.named_by = named_by;
-  place.shape = shape_of(item);
+  place.shape = shape_of(document_, item);
   const std::string format = attribute(item, "Format");
   if (same_but_for_case(format, "HDF") || same_but_for_case(format, "HDF5") ||
       same_but_for_case(format, "H5")) {
@@ -121,32 +192,12 @@ DataPlace DataReader::place_of(pugi::xml_node item) {
     throw document_.error(item, fmt::format("the Format is '{}'", format.substr(0, 40)),
                           "HDF, XML and Binary are understood");
   }
-  place.alternative = alternative_of(item);
+  place.alternative = alternative_of(document_, item);
   if (is_binary) {
     place.format = DataPlace::Format::binary;
-    find_bytes(item, place);
+    find_bytes(document_, item, place);
   }
   return place;
-}
-
-std::vector<std::uint64_t> DataReader::shape_of(pugi::xml_node item) const {
-  std::vector<std::uint64_t> shape;
-  const std::string dimensions = attribute(item, "Dimensions");
-  std::string_view rest = dimensions;
-  for (std::string_view word = next_word(rest, kBlanksOfXml); !word.empty();
-       word = next_word(rest, kBlanksOfXml)) {
-    std::uint64_t size = 0;
-    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), size);
-    if (code != std::errc{} || end != word.data() + word.size()) {
-      throw document_.error(item, fmt::format("Dimensions is '{}'", dimensions.substr(0, 40)),
-                            "whole numbers, such as 100 3, are needed");
-    }
-    shape.push_back(size);
-  }
-  if (shape.empty()) {
-    throw document_.error(item, "the DataItem has no Dimensions", "Dimensions=\"100 3\" is needed");
-  }
-  return shape;
 }
 
 void DataReader::find_dataset(pugi::xml_node item, DataPlace& place) {
@@ -169,34 +220,6 @@ void DataReader::find_dataset(pugi::xml_node item, DataPlace& place) {
                           "the XML and the HDF5 file may be of different runs");
   }
   place.alternative = info.alternative;
-}
-
-std::size_t DataReader::alternative_of(pugi::xml_node item) const {
-  const std::string type = attribute(item, "NumberType", "DataType");
-  const std::string precision = attribute(item, "Precision");
-  const auto found = std::find_if(kNumberTypes.begin(), kNumberTypes.end(), [&](const NumberType& known) {
-    if (!same_but_for_case(known.name, type.empty() ? "Float" : type)) return false;
-    const bool usual = known.precision == 4 || known.name.ends_with("Char") || known.name.ends_with("Short");
-    return precision.empty() ? usual : std::to_string(known.precision) == precision;
-  });
-  if (found == kNumberTypes.end()) {
-    throw document_.error(item, fmt::format("the numbers are '{}' of {} bytes", type, precision),
-                          "Float, Int, UInt, Char and UChar are understood");
-  }
-  return found->alternative;
-}
-
-void DataReader::find_bytes(pugi::xml_node item, DataPlace& place) const {
-  place.file = trimmed_blanks(ElementText(item).view());
-  const std::string order = attribute(item, "Endian");
-  if (same_but_for_case(order, "Big")) place.order = std::endian::big;
-  if (same_but_for_case(order, "Little")) place.order = std::endian::little;
-  const std::string compression = attribute(item, "Compression");
-  if (!compression.empty() && !same_but_for_case(compression, "Raw")) {
-    throw document_.error(item, fmt::format("the binary file is compressed ({})", compression.substr(0, 40)),
-                          "write it without Compression");
-  }
-  place.seek = item.attribute("Seek").as_ullong(0);
 }
 
 FilePath DataReader::path_of(pugi::xml_node item, const std::string& name) const {
@@ -254,18 +277,13 @@ std::vector<Index> DataReader::read_indices(const DataPlace& place) {
   return indices;
 }
 
-void DataReader::claim(pugi::xml_node item, std::uint64_t bytes) const {
-  const std::string fault = refused_claim(bytes, "the DataItem");
-  if (!fault.empty()) throw document_.error(item, fault, kClaimRemedy);
-}
-
 Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const {
   const ElementText whole_text(item);
   std::string_view text = whole_text.view();
   const std::uint64_t count = place.count();
   return numbers_of_type(place.alternative, [&]<class Number>(std::vector<Number>& numbers) {
     const std::uint64_t most = std::min<std::uint64_t>(count, text.size() / 2 + 1);
-    claim(item, bytes_for(most, sizeof(Number)));
+    claim(document_, item, bytes_for(most, sizeof(Number)));
     resize_large(numbers, most);
     const RegularNumbers regular = read_regular_numbers<Number>(text, numbers);
     numbers.resize(regular.count);
@@ -289,21 +307,6 @@ Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const 
   });
 }
 
-/// Throws InputError if the XML gives a checksum and the values of a plain binary file have another checksum.
-template <class Number>
-void DataReader::check_sum(const DataPlace& place, pugi::xml_node item,
-                           const std::vector<Number>& numbers) const {
-  const std::string_view expected = item.attribute(kValueMark).value();
-  if (expected.empty()) return;
-  Checksum sum;
-  sum.add_all(numbers);
-  if (expected == mark_of(sum.value())) return;
-  throw NotTogether(document_.error(
-      item, fmt::format("'{}' was not written together with this file: its checksum differs", place.file),
-      fmt::format("give the files of one mesh, or remove the attribute {} if they belong together",
-                  kValueMark)));
-}
-
 Values DataReader::read_binary(const DataPlace& place, pugi::xml_node item) {
   auto known = binaries_.find(place.file);
   if (known == binaries_.end()) {
@@ -318,13 +321,13 @@ Values DataReader::read_binary(const DataPlace& place, pugi::xml_node item) {
         fmt::format("{} values of {} bytes from byte {} on are needed", count, size, place.seek));
   }
   return numbers_of_type(place.alternative, [&]<class Number>(std::vector<Number>& numbers) {
-    claim(item, bytes_for(count, sizeof(Number)));
+    claim(document_, item, bytes_for(count, sizeof(Number)));
     numbers.resize(count);
     if (count > 0) std::memcpy(numbers.data(), bytes.data() + place.seek, count * sizeof(Number));
     if (place.order != std::endian::native) {
       for (Number& number : numbers) number = swapped_bytes(number);
     }
-    check_sum(place, item, numbers);
+    check_sum(document_, place, item, numbers);
   });
 }
 

@@ -76,20 +76,11 @@ class DataReader {
   [[nodiscard]] const std::map<std::string, hdf5::File>& files() const noexcept { return files_; }
 
  private:
-  [[nodiscard]] std::vector<std::uint64_t> shape_of(pugi::xml_node item) const;
-  /// Returns the number type of values in XML or in a binary file, as an alternative of Values.
-  [[nodiscard]] std::size_t alternative_of(pugi::xml_node item) const;
   /// Sets where the values of a DataItem are in an HDF5 file, and their number type.
   void find_dataset(pugi::xml_node item, DataPlace& place);
-  /// Sets where the values of a DataItem are in a binary file.
-  void find_bytes(pugi::xml_node item, DataPlace& place) const;
   const hdf5::File& file(pugi::xml_node item, const std::string& name);
   [[nodiscard]] Values read_text(const DataPlace& place, pugi::xml_node item) const;
   [[nodiscard]] Values read_binary(const DataPlace& place, pugi::xml_node item);
-  template <class Number>
-  void check_sum(const DataPlace& place, pugi::xml_node item, const std::vector<Number>& numbers) const;
-  /// Throws if allocating `bytes` for values would exceed the limit on memory.
-  void claim(pugi::xml_node item, std::uint64_t bytes) const;
 
   const Document& document_;
   FilePath path_;

@@ -65,7 +65,8 @@ void Writer::write_field(const Field& field) {
 }
 
 void Writer::write_points(const Field& field) {
-  const auto width = static_cast<std::size_t>(field.axis >= 0 ? 1 : dimension_of(field));
+  const bool is_flat = same_but_for_case(attribute(element_of(field), "GeometryType", "Type"), "XY");
+  const std::size_t width = field.axis >= 0 ? 1 : is_flat ? 2 : 3;
   const auto coordinate = [&](std::size_t v, std::size_t k) {
     return mesh_.points[v][field.axis >= 0 ? static_cast<std::size_t>(field.axis) : k];
   };
@@ -81,10 +82,6 @@ void Writer::write_points(const Field& field) {
         }
       });
   put(field.place, values, width);
-}
-
-int Writer::dimension_of(const Field& field) const {
-  return same_but_for_case(attribute(element_of(field), "GeometryType", "Type"), "XY") ? 2 : 3;
 }
 
 void Writer::write_topology(const Field& field) {
@@ -174,7 +171,7 @@ void Writer::write_array(const Field& field) {
     made = marks_named(field.name, field.association);
     array = made ? &*made : nullptr;
   }
-  if (array == nullptr || are_texts(array->values)) return remove_element(field);
+  if (array == nullptr || are_texts(array->values)) return void(gone_.insert(&field));
   const std::optional<Values> own = values_of(*array, field.association, field.part);
   const Values& values = own ? *own : array->values;
   if (size_of(values) != field.place.count()) {
@@ -188,7 +185,7 @@ void Writer::write_array(const Field& field) {
 
 void Writer::write_set(const Field& field) {
   const EntitySet* const set = parts_.set(field.name, field.association);
-  if (set == nullptr) return remove_element(field);
+  if (set == nullptr) return void(gone_.insert(&field));
   const bool on_cells = field.association == Association::cells;
   std::vector<Index> place;
   if (on_cells) place = places_in(rows_[field.part]);
@@ -199,8 +196,6 @@ void Writer::write_set(const Field& field) {
   }
   put_indices(field.place, numbers, 1);
 }
-
-void Writer::remove_element(const Field& field) { gone_.insert(&field); }
 
 void Writer::remove_gone() {
   if (gone_.empty()) return;
@@ -251,14 +246,12 @@ std::optional<Values> Writer::values_of(const DataArray& array, Association asso
   }
   if (array.is_dense()) return {};
   const std::vector<Index>& rows = on_vertices ? row_of : rows_of_cells;
-  if (std::find(rows.begin(), rows.end(), -1) != rows.end()) note_filled_once(array);
+  if (std::find(rows.begin(), rows.end(), -1) != rows.end()) {
+    Notes note;
+    note_filled(array, missing_word(array.values), note);
+    if (std::find(notes_.begin(), notes_.end(), note.front()) == notes_.end()) notes_.push_back(note.front());
+  }
   return rows_of_values(array.values, array.components, rows);
-}
-
-void Writer::note_filled_once(const DataArray& array) {
-  Notes note;
-  note_filled(array, missing_word(array.values), note);
-  if (std::find(notes_.begin(), notes_.end(), note.front()) == notes_.end()) notes_.push_back(note.front());
 }
 
 }  // namespace meshorder::xdmf

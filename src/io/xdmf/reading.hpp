@@ -108,14 +108,12 @@ class ArrayReader {
 
   /// Adds an array under a free name, its own name if possible; returns the name.
   std::string add_growing(DataArray array);
-  [[nodiscard]] GrowingArray* array_named(const std::string& name, Association association);
   [[nodiscard]] std::string name_of(pugi::xml_node element) const;
   void read_of_grid(pugi::xml_node item, const std::string& name);
   /// Returns whether an array holds labels of cells: tags of FEniCSx or FEniCS, or an array called kLabel.
   [[nodiscard]] bool is_label(const Field& field, const DataArray& array) const;
   /// Renames an array to kLabel, unless one of its cells has a label already.
   void take_label(const Field& field, DataArray& array);
-  void name_pending();
   /// Adds an array, or appends its rows to the array of that name if they fit; returns the array's name.
   std::string add(DataArray array, int part);
   /// Appends rows if their type fits and their cells have no rows yet; else returns false.

@@ -28,16 +28,20 @@ void set_either(pugi::xml_node element, const char* name, const char* other, con
   set_attribute(element, element.attribute(other) && !element.attribute(name) ? other : name, value);
 }
 
+namespace {
+
+void set_number_type(pugi::xml_node item, std::size_t alternative) {
+  const auto [name, precision] = number_type_of(alternative);
+  set_either(item, "NumberType", "DataType", name);
+  set_attribute(item, "Precision", std::to_string(precision));
+}
+
+}  // namespace
+
 void Writer::set_shape(pugi::xml_node item, const std::vector<std::uint64_t>& shape) {
   std::string text;
   for (const std::uint64_t n : shape) text += (text.empty() ? "" : " ") + std::to_string(n);
   set_attribute(item, "Dimensions", text);
-}
-
-void Writer::set_number_type(pugi::xml_node item, std::size_t alternative) {
-  const auto [name, precision] = number_type_of(alternative);
-  set_either(item, "NumberType", "DataType", name);
-  set_attribute(item, "Precision", std::to_string(precision));
 }
 
 std::vector<std::uint64_t> Writer::shape_at(const DataPlace& place, std::size_t count,

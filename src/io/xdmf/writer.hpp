@@ -62,7 +62,6 @@ class Writer {
 
   // values of one DataItem: value_writer.cpp
   static void set_shape(pugi::xml_node item, const std::vector<std::uint64_t>& shape);
-  static void set_number_type(pugi::xml_node item, std::size_t alternative);
   /// Returns the shape of values at a place in rows of `components`; the old shape if it fits.
   std::vector<std::uint64_t> shape_at(const DataPlace& place, std::size_t count, std::size_t components);
   /// Returns whether another field has written other values to the dataset of a place, for example an array
@@ -94,7 +93,6 @@ class Writer {
   [[nodiscard]] pugi::xml_node element_of(const Field& field) const;
   void write_field(const Field& field);
   void write_points(const Field& field);
-  [[nodiscard]] int dimension_of(const Field& field) const;
   void write_topology(const Field& field);
   /// Writes to the Topology of a field the number of cells that follows from the field's shape.
   void announce_cells_of(const Field& field) const;
@@ -108,16 +106,13 @@ class Writer {
   [[nodiscard]] std::vector<Index> numbers_of(const std::vector<Index>& rows, bool mixed, int base) const;
   void write_array(const Field& field);
   void write_set(const Field& field);
-  /// Marks the Attribute or Set of a field that the mesh no longer has; see `remove_gone`.
-  void remove_element(const Field& field);
-  /// Removes marked elements, and their datasets unless other elements name them.
+  /// Removes the Attributes and Sets of `gone_`, and their datasets unless other elements name them.
   void remove_gone();
   /// Returns the row of each cell in a part, −1 for cells of other parts.
   [[nodiscard]] std::vector<Index> places_in(const std::vector<Index>& rows) const;
   /// Returns the values of an array for all vertices or for the cells of a part; nullopt if the array already
   /// has exactly these values. Notes rows that the array lacks.
   std::optional<Values> values_of(const DataArray& array, Association association, int part);
-  void note_filled_once(const DataArray& array);
 
   // what the layout has no place for: attribute_writer.cpp
   /// Returns the array of marks of the set that "set:NAME" names; nullopt if there is no such set.
@@ -126,14 +121,10 @@ class Writer {
   /// Returns the sets that have a place in the layout.
   [[nodiscard]] std::set<std::pair<Association, std::string>> placed_sets() const;
   void add_ids(const std::vector<std::int64_t>& ids, const char* name, Association association);
-  /// Returns a name that no other attribute has.
-  std::string unused_name(const DataArray& array);
   void add_array(const DataArray& array);
   [[nodiscard]] bool has_rows(const DataArray& array, const std::vector<Index>& cells) const;
   void add_attribute(int part, const DataArray& array, const std::string& name, const Values& values);
   static std::string unused_dataset(Hdf5Output& output, int part, const std::string& name);
-  /// Returns the Grid of a part, or the first Grid of a series.
-  [[nodiscard]] pugi::xml_node grid_of(int part) const;
 
   const Mesh& mesh_;
   const NamedParts parts_{mesh_};
@@ -150,7 +141,7 @@ class Writer {
   std::map<std::string, std::vector<std::uint64_t>>
       shapes_;  // shapes that have changed, by the new name of a dataset
   std::vector<OutputFile> binaries_;
-  std::set<const Field*> gone_;
+  std::set<const Field*> gone_;                 // fields that the mesh no longer has
   std::map<Association, DistinctNames> names_;  // of arrays
 };
 
