@@ -33,7 +33,7 @@ int status_of(const meshorder::Error& error) {
 }
 
 /// Prints why the command fails, on the first rank only; returns the status.
-int tell(const Communicator& communicator, const std::string& message, int status) {
+int report_at_root(const Communicator& communicator, const std::string& message, int status) {
   return communicator.is_root() ? report_failure(message, status) : status;
 }
 
@@ -69,7 +69,7 @@ int run(const Communicator& communicator, bool is_started_as_rank, std::vector<s
     return kBadInput;
   }
   if (const auto fault = meshorder::command::option_without_value(arguments))
-    return tell(communicator, *fault, kBadInput);
+    return report_at_root(communicator, *fault, kBadInput);
   arguments = meshorder::command::with_words_as_options(std::move(arguments));
   const std::string first = arguments.front();
   std::reverse(arguments.begin(), arguments.end());  // the parser expects the arguments in reverse
@@ -81,17 +81,17 @@ int run(const Communicator& communicator, bool is_started_as_rank, std::vector<s
     if (communicator.is_root()) meshorder::command::write_stdout(text.str());
   } catch (const CLI::ParseError& error) {
     if (meshorder::command::unknown_command(app))
-      return tell(communicator, "several ranks run `order` only; start `" + first + "` without mpirun",
-                  kBadInput);
-    if (const auto fault = option_of_one_process(app)) return tell(communicator, *fault, kBadInput);
-    return tell(communicator, meshorder::command::usage_fault(app, error), kBadInput);
+      return report_at_root(
+          communicator, "several ranks run `order` only; start `" + first + "` without mpirun", kBadInput);
+    if (const auto fault = option_of_one_process(app)) return report_at_root(communicator, *fault, kBadInput);
+    return report_at_root(communicator, meshorder::command::usage_fault(app, error), kBadInput);
   }
   if (communicator.is_root()) meshorder::command::flush_stdout();
   return 0;
 }
 
 /// Reports that MPI does not see the other processes started with this one; returns the status.
-int tell_of_launcher(bool is_first_process) {
+int report_launcher(bool is_first_process) {
   return is_first_process
              ? report_failure(
                    "the launcher started several processes, but MPI sees each of them alone: start "
@@ -121,11 +121,11 @@ int main(int argc, char** argv) {
     const meshorder::distributed::Session session(argc, argv);
     try {
       const Communicator communicator;
-      if (communicator.size() == 1 && is_one_of_several) return tell_of_launcher(is_first_process);
+      if (communicator.size() == 1 && is_one_of_several) return report_launcher(is_first_process);
       try {
         return run(communicator, is_started_as_rank, {argv + std::min(argc, 1), argv + argc});
       } catch (const meshorder::distributed::SharedError& error) {
-        return tell(communicator, error.what(), status_of(error));
+        return report_at_root(communicator, error.what(), status_of(error));
       }
     } catch (const std::bad_alloc&) {
       abort_all("out of memory");

@@ -122,7 +122,7 @@ bool has_run = false;
 
 /// Called at the end of the process. Reports a failure if libhdf5 ended the process, as it does when memory
 /// runs out.
-extern "C" void tell_if_a_library_ended_it() {
+extern "C" void report_end_by_a_library() {
   if (has_run) return;
   remove_unfinished_outputs();
   std::_Exit(report_failure("a library has ended the process; is there enough memory?", kOwnFailure));
@@ -141,7 +141,7 @@ void prepare_process() {
 int run_program(const Program& program, int argc, char** argv) noexcept {
   prepare_process();
   clean_up_at_signals();
-  (void)std::atexit(tell_if_a_library_ended_it);
+  (void)std::atexit(report_end_by_a_library);
   std::optional<int> status;
   if (program.hand_over != nullptr) status = program.hand_over(argv);
   if (!status) status = run_and_report(program, argc, argv);

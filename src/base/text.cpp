@@ -5,6 +5,21 @@
 #include <numeric>
 
 namespace meshorder {
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+std::string upper_case(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return result;
+}
+
 namespace {
 
 /// The character at the front of a text.
@@ -67,11 +82,8 @@ std::string with_escapes(std::string_view text, IsPlain is_plain) {
 }
 
 /// Returns the word in lower case without leading dashes.
-std::string bare(const std::string& word) {
-  std::string letters = word.substr(std::min(word.find_first_not_of('-'), word.size()));
-  std::transform(letters.begin(), letters.end(), letters.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return letters;
+std::string bare(std::string_view word) {
+  return lower_case(word.substr(std::min(word.find_first_not_of('-'), word.size())));
 }
 
 /// Returns the least number of insertions, deletions, replacements and exchanges of adjacent letters that

@@ -67,6 +67,12 @@ inline std::string_view next_word(std::string_view& line, std::string_view separ
   return {begin, static_cast<std::size_t>(after - begin)};
 }
 
+/// Returns the text with its ASCII letters in lower case.
+std::string lower_case(std::string_view text);
+
+/// Returns the text with its ASCII letters in upper case.
+std::string upper_case(std::string_view text);
+
 /// Returns whether two words differ at most in the case of ASCII letters.
 inline bool same_but_for_case(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };

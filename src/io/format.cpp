@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <system_error>
 
 namespace meshorder {
@@ -78,12 +77,6 @@ const Format& with_library(const Format& format, const std::string& where) {
     throw Unavailable(where + ": " + unavailable.what());
   }
   return format;
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 /// Returns whether the size is that of a binary STL file with the number of triangles in its header.
@@ -224,7 +217,7 @@ std::filesystem::path without_piece_numbers(const std::filesystem::path& path) {
 
 }  // namespace
 
-std::string Format::key() const { return lower_case(std::string(name)); }
+std::string Format::key() const { return lower_case(name); }
 
 std::span<const Format> all_formats() { return kFormats; }
 

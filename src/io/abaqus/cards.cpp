@@ -64,7 +64,7 @@ std::vector<std::string_view> pieces_of(std::string_view lines) {
 
 /// Returns `text` in capitals and without blanks. CalculiX ignores blanks in keywords.
 std::string compact(std::string_view text) {
-  std::string result = capitals(text);
+  std::string result = upper_case(text);
   std::erase_if(result, [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; });
   return result;
 }
@@ -85,7 +85,7 @@ bool continues_keyword(std::string_view line) {
   const std::string_view first = trimmed(line.substr(0, line.find_first_of(",=")));
   if (first.empty() || std::isalpha(static_cast<unsigned char>(first.front())) == 0) return false;
   return line.find('=') != std::string_view::npos ||
-         std::find(kWithoutValue.begin(), kWithoutValue.end(), capitals(first)) != kWithoutValue.end();
+         std::find(kWithoutValue.begin(), kWithoutValue.end(), upper_case(first)) != kWithoutValue.end();
 }
 
 Card::Parameter parameter_of(std::string_view piece) {
@@ -127,7 +127,7 @@ Card parse_card(std::string_view lines) {
   const std::vector<std::string_view> pieces = pieces_of(lines);
   Card card;
   const std::string_view keyword = trimmed_of_ends(pieces.front());
-  card.title = capitals(keyword);
+  card.title = upper_case(keyword);
   card.keyword = compact(keyword.substr(keyword.starts_with('*') ? 1 : 0));
   for (std::size_t i = 1; i < pieces.size(); ++i) {
     Card::Parameter parameter = parameter_of(pieces[i]);
@@ -172,13 +172,6 @@ std::int64_t number_of(std::string_view field) {
   const char* const end = field.data() + field.size();
   const auto [after, code] = std::from_chars(field.data(), end, number);
   return code == std::errc{} && after == end && number > 0 ? number : 0;
-}
-
-std::string capitals(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return result;
 }
 
 namespace {
@@ -350,7 +343,7 @@ class ReferenceFinder {
 
   /// Returns whether a load's label is one for CalculiX's fluid networks: F1FC of *FILM, P1NP of *DLOAD.
   [[nodiscard]] bool names_fluid(std::string_view label) const {
-    const std::string text = capitals(label);
+    const std::string text = upper_case(label);
     return (card_.keyword == "FILM" && text.ends_with("FC")) ||
            (card_.keyword == "DLOAD" && text.ends_with("NP"));
   }

@@ -53,9 +53,6 @@ std::string_view without_quotes(std::string_view value);
 /// Returns 0 for anything else.
 std::int64_t number_of(std::string_view field);
 
-/// Returns `text` in capitals.
-std::string capitals(std::string_view text);
-
 /// A number of a node or element in the lines of a card.
 struct Reference {
   Association association;

@@ -329,7 +329,7 @@ class DeckReader {
 
   void read_elements(const Card& card, std::string text) {
     refuse_in_assembly("*ELEMENT");
-    const std::string type = capitals(card.value("TYPE"));
+    const std::string type = upper_case(card.value("TYPE"));
     if (type.empty()) lines_.fail(line_, "*ELEMENT has no TYPE", "write *ELEMENT, TYPE=C3D4 or the like");
     const std::string set(card.value("ELSET"));
     const auto kind = kind_of(type);
@@ -596,7 +596,7 @@ class DeckReader {
       if (!missing.empty()) notes_.push_back(note_of_missing(which, missing));
       std::set<std::string> named;
       for (const auto& [association, name] : named_sets(card, text)) {
-        if (sets_.knows(association, name) || !named.insert(capitals(name)).second) continue;
+        if (sets_.knows(association, name) || !named.insert(upper_case(name)).second) continue;
         notes_.push_back(fmt::format("{} the {} '{}', which the deck does not have", which,
                                      name_of_sets(association), shown(name)));
       }

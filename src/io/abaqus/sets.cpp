@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/abaqus/sets.hpp"
 
+#include "base/text.hpp"
 #include "io/deck/numbers.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/stream/scanner.hpp"
@@ -49,9 +50,9 @@ class SetReader::Repeats {
 
 std::size_t SetReader::set_named(Association association, std::string_view name) {
   const auto [found, is_new] =
-      places_.try_emplace(Key{association, in_assembly_, capitals(name)}, sets_.size());
+      places_.try_emplace(Key{association, in_assembly_, upper_case(name)}, sets_.size());
   if (is_new) {
-    const bool also_of_part = in_assembly_ && places_.contains(Key{association, false, capitals(name)});
+    const bool also_of_part = in_assembly_ && places_.contains(Key{association, false, upper_case(name)});
     sets_.push_back({(also_of_part ? "Assembly." : "") + std::string(name), association, {}});
   }
   return found->second;
@@ -59,7 +60,7 @@ std::size_t SetReader::set_named(Association association, std::string_view name)
 
 const EntitySet* SetReader::find(Association association, bool in_assembly, std::string_view name) const {
   const auto at = [&](bool of_assembly, std::string_view key) -> const EntitySet* {
-    const auto found = places_.find(Key{association, of_assembly, capitals(key)});
+    const auto found = places_.find(Key{association, of_assembly, upper_case(key)});
     return found == places_.end() ? nullptr : &sets_[found->second];
   };
   if (in_assembly) {
@@ -73,7 +74,7 @@ const EntitySet* SetReader::find(Association association, bool in_assembly, std:
 bool SetReader::knows(Association association, std::string_view name) const {
   const std::string_view after_dot = name.substr(name.find('.') + 1);  // the whole name if there is no dot
   return find(association, true, name) != nullptr ||
-         places_.contains(Key{association, true, capitals(after_dot)});
+         places_.contains(Key{association, true, upper_case(after_dot)});
 }
 
 void SetReader::add_block(Association association, std::string_view name, Index first, Index count) {

@@ -56,7 +56,9 @@ std::shared_ptr<Deck> plain_deck(const Mesh& mesh) {
 }
 
 /// Takes the next word of a card and returns it in capitals; a name in quotes may have several words.
-std::string next_word_in_capitals(std::string_view& text) { return capitals(next_word(text, " \t,=\"\r\n")); }
+std::string next_word_in_capitals(std::string_view& text) {
+  return upper_case(next_word(text, " \t,=\"\r\n"));
+}
 
 /// Returns a valid name that is not in `taken`, ignoring case, and adds it to `taken`.
 std::string name_for(const std::string& given, std::set<std::string>& taken, NameNumbers& numbers) {
@@ -68,7 +70,7 @@ std::string name_for(const std::string& given, std::set<std::string>& taken, Nam
     return std::string(utf8_prefix(name, kLongest - end.size())) + end;
   };
   return numbers.free_name(std::string(utf8_prefix(name, kLongest)), numbered,
-                           [&](const std::string& free) { return taken.insert(capitals(free)).second; });
+                           [&](const std::string& free) { return taken.insert(upper_case(free)).second; });
 }
 
 class DeckWriter {

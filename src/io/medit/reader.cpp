@@ -110,7 +110,7 @@ class Reader {
       return false;
     }
     refuse_numbers(keyword);
-    if (!kinds_seen_.insert(lower(keyword)).second) {
+    if (!kinds_seen_.insert(lower_case(keyword)).second) {
       in_.fail("a second section " + keyword, "each may appear once");
     }
     last_keyword_ = keyword;
@@ -141,12 +141,6 @@ class Reader {
   static bool comes_before_dimension(std::string_view keyword) {
     const std::size_t kind = find_kind(kPlainKinds, keyword);
     return kind < kPlainKinds.size() && kPlainKinds[kind].words_per_dimension == 0;
-  }
-
-  static std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
   }
 
   void refuse_numbers(const std::string& keyword) const {

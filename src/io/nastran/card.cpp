@@ -198,10 +198,7 @@ void split_card(std::string_view card, CardFields& result) { Splitter(card, resu
 std::string name_of(const CardFields& card) {
   std::string_view name = card.text(0);
   if (name.ends_with('*')) name.remove_suffix(1);
-  std::string result(trimmed(name));
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return result;
+  return upper_case(trimmed(name));
 }
 
 std::optional<std::int64_t> integer_of(std::string_view field) {

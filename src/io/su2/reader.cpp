@@ -25,13 +25,6 @@ using SectionKind = Su2Metadata::SectionKind;
 
 constexpr char kComment = '%';
 
-std::string upper(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return result;
-}
-
 /// Returns whether the value of a keyword is known to name no point or element.
 bool is_plain(std::string_view keyword) {
   constexpr std::array<std::string_view, 6> kPlain{"NZONE", "IZONE", "NPERIODIC", "NCHUNK", "AOA", "AOS"};
@@ -76,7 +69,7 @@ class Su2Reader {
                    : fmt::format("the number after {}= may be too small, or {}= is not understood", keyword_,
                                  keyword_));
     }
-    keyword_ = upper(trimmed(content.substr(0, equals)));
+    keyword_ = upper_case(trimmed(content.substr(0, equals)));
     value_ = trimmed(content.substr(equals + 1));
     return true;
   }
