@@ -320,7 +320,9 @@ TEST(Unv, KeepsNumbersFromZero) {
       "    -1\n";
   Mesh mesh = read_text(text);
   EXPECT_THAT(mesh.vertex_ids, ElementsAre(0, 1));
-  EXPECT_EQ(written(mesh), text);
+  Notes notes;
+  EXPECT_EQ(written(mesh, &notes), text);
+  EXPECT_THAT(notes, IsEmpty());
   apply_reordering(mesh, Permutation::from_old_to_new({1, 0}), Permutation::identity(1));
   EXPECT_THAT(dataset_of(written(mesh), 2412),
               HasSubstr("         0         0         0\n         0         1\n"));

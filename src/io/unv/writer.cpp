@@ -125,7 +125,9 @@ class UnvWriter {
     write_new_groups();
     write_new_results();
     out_.commit();
-    note_losses();
+    if (own_ != nullptr) return;
+    note_unfit_ids(mesh_, kName, kLargestNumber, notes_);
+    note_metadata_unsupported(mesh_, kName, notes_);
   }
 
  private:
@@ -440,11 +442,6 @@ class UnvWriter {
       for (int k = 0; k < 6; ++k) (void)lines_.real(0, 5);
       lines_.end_line();
     }
-  }
-
-  void note_losses() {
-    note_unfit_ids(mesh_, kName, kLargestNumber, notes_);
-    if (own_ == nullptr) note_metadata_unsupported(mesh_, kName, notes_);
   }
 
   const Mesh& mesh_;
