@@ -22,11 +22,10 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kFlushAt = std::size_t{1} << 20;
-constexpr std::size_t kWithoutCopy = std::size_t{1}
-                                     << 16;             // so many bytes or more are written without a copy
-constexpr std::size_t kSyncAt = std::size_t{32} << 20;  // bytes after which they begin to go to the disk
-constexpr mode_t kMode = 0666;                          // the umask or the folder's default ACL removes bits
-constexpr mode_t kPrivateMode = 0600;                   // until the new file gets the mode of the old file
+constexpr std::size_t kNoCopyAt = std::size_t{1} << 16;  // so many bytes or more are written without a copy
+constexpr std::size_t kSyncAt = std::size_t{32} << 20;   // bytes after which they begin to go to the disk
+constexpr mode_t kMode = 0666;                           // the umask or the folder's default ACL removes bits
+constexpr mode_t kPrivateMode = 0600;                    // until the new file gets the mode of the old file
 
 }  // namespace
 
@@ -84,7 +83,7 @@ void OutputFile::flush_if_full() {
 
 void OutputFile::write(std::string_view bytes) {
   auto& [text, place, scratch, file, since_sync] = *stream_;
-  if (scratch && bytes.size() >= kWithoutCopy) {
+  if (scratch && bytes.size() >= kNoCopyAt) {
     flush();
     check_written(stream_->put(bytes));
     return;
