@@ -8,7 +8,7 @@
 
 namespace meshorder {
 
-/// File extensions of Exodus II, which builds without Exodus II know, too.
+/// File extensions of Exodus II. Builds without netCDF need them, too, for error messages.
 inline constexpr std::array<std::string_view, 4> kExodusExtensions{".exo", ".e", ".ex2", ".g"};
 
 // Each function is defined in the folder of its format; format.cpp lists the formats.

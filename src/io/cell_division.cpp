@@ -37,7 +37,7 @@ std::vector<std::int64_t> sets_of_cells(const Mesh& mesh) {
 }
 
 /// Divides the cells by type and, unless `values` is empty, by each cell's value. Returns false if the values
-/// give more than kMostBlocks parts.
+/// give more than kMostBlocks blocks.
 bool divide_by(const Mesh& mesh, const std::vector<std::int64_t>& values, CellDivision& division) {
   std::map<std::tuple<std::int64_t, Shape, int>, Index> known;
   std::tuple<std::int64_t, Shape, int> last;

@@ -19,7 +19,7 @@ struct CellPart {
   std::int64_t label = 0;
 };
 
-/// Maximum number of blocks. Labels or sets that would give more blocks do not divide the cells.
+/// Maximum number of blocks. If labels or sets would give more blocks, cells are divided by type alone.
 inline constexpr std::size_t kMostBlocks = 10000;
 
 /// A division of cells into blocks: by label and type, by set and type, or by type alone.
@@ -27,7 +27,7 @@ struct CellDivision {
   bool by_labels = false;
   bool by_sets = false;
   std::vector<Index> key_of_cell;  ///< index in `keys` of each cell's block
-  std::vector<CellPart> keys;      ///< the blocks, in the order of their first cells; `first` is not used
+  std::vector<CellPart> keys;      ///< the blocks, in the order of their first cells, `first`
 };
 
 /// What divides the cells into blocks besides their types and 32-bit labels.
@@ -39,8 +39,8 @@ struct DividedBy {
 /// Returns the division of a mesh. O(cells · log blocks).
 CellDivision divide_cells(const Mesh& mesh, DividedBy divided_by);
 
-/// Returns the position of each cell if the blocks follow one another, blocks of the highest dimension first;
-/// `blocks` receives the first cell of each block. O(cells).
+/// Returns the permutation of cells that puts the blocks one after another, those of the highest dimension
+/// first. `blocks` receives the new position of the first cell of each block. O(cells).
 Permutation places_by_division(const CellDivision& division, std::vector<Index>& blocks);
 
 }  // namespace meshorder

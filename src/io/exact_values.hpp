@@ -54,7 +54,8 @@ inline bool are_float_points(const std::vector<Point>& points) {
   });
 }
 
-/// Returns the number of coordinates that points need, at least `of_file`. O(points).
+/// Returns how many coordinates a file needs for each point: 3 if any z is not 0, else 2 if any y is not 0;
+/// at least `of_file`. O(points).
 inline int coordinates_of(const std::vector<Point>& points, int of_file) {
   int needed = of_file;
   for (const Point& point : points) {

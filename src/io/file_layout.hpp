@@ -23,8 +23,8 @@ struct FilePart {
   Index components = 1;                             ///< numbers of a row
   std::int64_t rows = 0;                            ///< for the connectivity: number of vertices in it
   std::size_t number = 0;                           ///< index of its name in FileLayout::names
-  std::int64_t at = 0;      ///< byte offset of the size words before the values; without these, of the values
-  std::int64_t stored = 0;  ///< bytes in the file, including those words
+  std::int64_t at = 0;  ///< byte offset of the size words before the values; if there are none, of the values
+  std::int64_t stored = 0;  ///< bytes in the file, including the size words
   std::int64_t blocks = 0;  ///< number of compressed blocks; 0: not compressed
   std::int64_t block = 0;   ///< uncompressed bytes of a block; the last one may be smaller
 
@@ -47,17 +47,17 @@ struct FileSizes {
 /// A file as a list of parts, for code that reads and writes their bytes directly.
 struct FileLayout : FileSizes {
   std::vector<FilePart> parts;
-  std::vector<std::string> names;  ///< by FilePart::number
+  std::vector<std::string> names;  ///< indexed by FilePart::number
 };
 
-/// Makes the two files of a mesh: a document, and the data that it names.
+/// Makes the two files of a mesh: a document, and a data file that the document names.
 class SplitFile : public Polymorphic {
  public:
-  /// Returns the path of the data that belong to a new document.
+  /// Returns the path of the data file for a new document.
   [[nodiscard]] virtual std::string data_of(const std::string& document) const = 0;
 
-  /// Writes data to a path on disk. Allocates space for the values of all parts, which the caller must then
-  /// write.
+  /// Writes the data file `data` on disk. Allocates space for the values of all parts; the caller must then
+  /// write the values.
   ///
   /// @param document  path of the new document; the caller writes it
   /// @param checksum  marks both files: a `Checksum` of all points, then of the vertices of each cell
@@ -66,10 +66,11 @@ class SplitFile : public Polymorphic {
   [[nodiscard]] virtual std::string write_without_values(const std::string& document, const std::string& data,
                                                          std::uint64_t checksum) const = 0;
 
-  /// Returns the byte offset of each part, by FilePart::number, in data that `write_without_values` made.
+  /// Returns the byte offset of each part in a data file of `write_without_values`, indexed by
+  /// FilePart::number.
   ///
-  /// @param name  name of the data in messages
-  /// @throws InputError if the data cannot be read, or lack space for a part
+  /// @param name  name of the data file in messages
+  /// @throws InputError if the data file cannot be read, or lacks space for a part
   [[nodiscard]] virtual std::vector<std::int64_t> places_in(const std::string& data,
                                                             const std::string& name) const = 0;
 };

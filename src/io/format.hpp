@@ -47,13 +47,13 @@ struct Format {
   std::vector<Index> (*together)(const Mesh&) = nullptr;
   bool single_file = true;  ///< whether a mesh is one file; several files do not fit one stream
   int first_number = 0;     ///< number of the first vertex and the first cell of a mesh without ids
-  /// As `first_number`, for the vertices or the cells of a mesh that came from the format. Null:
+  /// Returns the number of the first vertex or the first cell of a mesh that came from the format. Null:
   /// `first_number` is right for all files.
   std::int64_t (*first_number_of)(const Mesh&, Association) = nullptr;
   bool holds_ids = true;          ///< whether files can give vertices and cells any numbers
   std::string_view library = {};  ///< name of the library that parses the files; empty: meshorder parses them
-  /// Loads that library. A process must call it before it gives up its right to open files. Null: the library
-  /// is linked, or the format needs none.
+  /// Loads `library`. A process must call this function before it gives up its right to open files. Null: the
+  /// library is linked, or the format needs none.
   void (*load_library)() = nullptr;
 
   /// Returns the name in lower case, as the public functions take it.
@@ -90,19 +90,19 @@ std::optional<Permutation> arrange_cells(Mesh& mesh, const Format& to);
 /// cannot change places. O(cells · log cells).
 Permutation with_groups_together(const Mesh& mesh, Permutation cells, const Format& to);
 
-/// As `compute_reordering`, for a mesh that will be written in the format `options.format`, or in its own if
-/// that is empty: without groups in `options`, those of `Format::together` stay together.
+/// As `compute_reordering`, for a mesh that will be written in `options.format` (if empty, in the mesh's own
+/// format). If `options` has no groups of cells, the groups of `Format::together` stay together.
 MeshOrder compute_order_in_file(const Mesh& mesh, const CsrGraph& graph, const ReorderOptions& options);
 
 /// Throws InvalidArgument for `Ids::keep` if the format cannot hold ids.
 void check_holds_ids(const Format& format, Ids ids);
 
-/// Applies permutations that `reorder` returned for a mesh in the format `to`. Call `check_holds_ids` first.
-/// Throws as the public `apply_reordering`.
+/// Applies permutations that `reorder` returned for a mesh to be written in the format `to`. Call
+/// `check_holds_ids` first. Throws as the public `apply_reordering`.
 void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells,
                       Ids ids);
 
-/// Undoes `apply_reordering` with these permutations for a mesh in the format `to`. Throws as
+/// Undoes `apply_reordering` with these permutations for a mesh to be written in `to`. Throws as
 /// `apply_reordering`. Ids change as for `Ids::renumber`.
 void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells);
 
@@ -123,8 +123,8 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGr
 // Chooses between the two formats of the extension .inp, Abaqus decks and AVS UCD; says which formats have
 // numbers.
 
-/// As `format_of`, for a file to be read: .inp is AVS UCD if its first bytes look so, else Abaqus. Throws
-/// InputError for an .inp file that cannot be read.
+/// As `format_of`, for a file to be read: .inp is AVS UCD if the file's first bytes look like it, else
+/// Abaqus. Throws InputError for an .inp file that cannot be read.
 const Format& format_of_file(const FilePath& path);
 
 /// As `output_format_of`, for a mesh of the format `of_mesh` (`Mesh::format`): .inp means AVS UCD if the mesh

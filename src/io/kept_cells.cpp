@@ -19,7 +19,7 @@
 namespace meshorder {
 namespace {
 
-/// The cells of one type in a mesh.
+/// A type of cells, and the number of cells of this type.
 struct TypeCount {
   Shape shape;
   int vertices;
@@ -33,7 +33,8 @@ struct TypeCount {
 /// The types of some cells, in the order in which they first appear.
 struct TypeCounts {
   std::vector<TypeCount> types;
-  std::size_t last = 0;  ///< index in `types`: neighbouring cells mostly have the same type
+  std::size_t last =
+      0;  ///< index in `types` of the last cell's type: neighbouring cells mostly have the same type
 
   void add(Shape shape, int vertices, Index count) {
     if (types.empty() || !types[last].is(shape, vertices)) {
@@ -111,7 +112,7 @@ std::string in_words(const TypeCount& type) {
                      linear ? "" : fmt::format(" of {} vertices", type.vertices));
 }
 
-/// Keeps the rows of an array on cells; `place` is the new position of each cell, −1 if the cell is left out.
+/// Keeps the rows of kept cells in an array on cells; `place`: the new position of each cell, −1 if left out.
 void keep_rows(DataArray& array, const std::vector<Index>& kept, const std::vector<Index>& place) {
   std::vector<Index> rows;
   if (array.is_dense()) {

@@ -13,7 +13,7 @@ namespace meshorder {
 /// or sets change.
 class NamedParts {
  public:
-  /// O(parts · log parts).
+  /// O(n · log n) for n arrays and sets.
   explicit NamedParts(const Mesh& mesh) {
     for (const DataArray& array : mesh.data) arrays_.try_emplace({array.association, array.name}, &array);
     for (const EntitySet& set : mesh.sets) sets_.try_emplace({set.association, set.name}, &set);

@@ -56,7 +56,7 @@ std::string add_named(Mesh& mesh, DataArray array, UniqueNames& names);
 /// Adds a set to a mesh under a name that no other set has; returns that name.
 std::string add_named(Mesh& mesh, EntitySet set, UniqueNames& names);
 
-// Names of arrays and sets as a format can hold them.
+// The functions and the class below make names that a format can hold.
 
 /// Returns the name with "_" in place of control characters and of the characters in `forbidden`. O(size).
 std::string plain_name(std::string_view name, std::string_view forbidden = {});

@@ -34,7 +34,7 @@ struct NpyHeader {
   std::vector<std::int64_t> shape;
 };
 
-/// Returns the bytes before the numbers of an array in C order; their count is a multiple of 64.
+/// Returns the header of an array in C order: all bytes before the numbers. Its size is a multiple of 64.
 std::string npy_header(std::string_view type, std::span<const std::int64_t> shape);
 
 /// Reads the bytes before the first number. Throws Error, with the byte, if the file is not a NumPy file.

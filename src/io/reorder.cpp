@@ -24,7 +24,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the number of the first vertex and the first cell in the mesh's file, if the mesh has no ids.
+/// Returns the number that the mesh's file gives to the first vertex or cell if the file has no ids.
 std::int64_t first_number(const Mesh& mesh, Association of) {
   const std::span<const Format> formats = all_formats();
   const auto own = std::find_if(formats.begin(), formats.end(),
@@ -67,7 +67,7 @@ const Format* format_to_write(const Mesh& mesh, const std::string& name) {
   return mesh.format.empty() ? nullptr : &format_named(mesh.format);
 }
 
-/// Returns one number for each cell, in the order in which `arranged` put the cells.
+/// Reorders `numbers`, one for each cell, as `arranged` reordered the cells.
 std::vector<std::int64_t> in_new_order(const IndexView& numbers, const Permutation& arranged) {
   std::vector<std::int64_t> moved;
   moved.reserve(numbers.size());

@@ -74,7 +74,7 @@ class DeckLines {
   FilePath main_;
   std::vector<OpenFile> files_;
   std::string line_end_;
-  std::string last_line_;  // of an included file, with the line end that it lacked
+  std::string last_line_;  // of an included file, with the line end added that the file lacked
   std::vector<std::string> included_;
 };
 

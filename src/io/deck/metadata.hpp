@@ -15,14 +15,14 @@
 
 namespace meshorder {
 
-/// What every deck holds, in its own order.
+/// The contents that all decks have, in the order of the deck.
 struct DeckContents {
   IdMap nodes;                  ///< their numbers
   IdMap elements;               ///< numbers of the elements that are cells
   std::vector<EntitySet> sets;  ///< members are positions in the file
   std::string line_end = "\n";
-  /// Parts that may name nodes or elements by number but are not understood: "CWELD (line 12)". If there are
-  /// any, all numbers must stay.
+  /// Cards or datasets that meshorder does not know and that may name nodes or elements by number: "CWELD
+  /// (line 12)". If there are any, all numbers must stay.
   std::vector<std::string> unknown;
   std::vector<std::string> contents;  ///< contents that other formats lose
 };
@@ -106,15 +106,15 @@ const DeckMetadata<Deck>* own_deck(const Mesh& mesh, Fits fits) {
 
 /// A vertex of a cell whose node comes later in the deck.
 ///
-/// @tparam Place  of the element in the deck, for a message
+/// @tparam Place  type of the element's place in the deck, for a message
 template <class Place>
 struct LaterNode {
-  Offset entry;  ///< of Cells::vertices
+  Offset entry;  ///< position in Cells::vertices
   std::int64_t number;
   Place place;
 };
 
-/// Fills in vertices when all nodes are known. `fail(later)` throws: there is no such node.
+/// Sets the entries that wait for `nodes`. Calls `fail(later)`, which throws, if there is no such node.
 template <class Place, class Fail>
 void resolve(const std::vector<LaterNode<Place>>& nodes, const IdMap& numbers, Cells& cells, Fail fail) {
   for (const LaterNode<Place>& later : nodes) {

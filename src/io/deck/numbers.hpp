@@ -16,8 +16,8 @@
 
 namespace meshorder {
 
-/// Replaces each place p by moves[p]; an empty `moves` changes nothing. Returns whether every item still has
-/// a place.
+/// Replaces each position p by moves[p]; an empty `moves` changes nothing. Returns whether all items still
+/// have a position.
 bool move_places(std::vector<Index>& places, std::span<const Index> moves);
 
 /// Returns whether ids are valid numbers of nodes or elements: from `smallest` to `largest`, each only once.

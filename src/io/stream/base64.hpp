@@ -19,7 +19,7 @@ class Base64Encoder {
  public:
   /// Returns the characters that these bytes complete.
   [[nodiscard]] std::string put(std::span<const char> bytes);
-  /// Returns the characters of the one or two bytes left, padded.
+  /// Returns the padded characters of the last one or two bytes; empty if no bytes are left.
   [[nodiscard]] std::string finish();
 
  private:

@@ -8,7 +8,7 @@
 
 namespace meshorder {
 
-/// Returns the number with its bytes in the other order.
+/// Returns the number with its bytes in reverse order.
 template <class Number>
 Number swapped_bytes(Number number) noexcept {
   static_assert(std::is_arithmetic_v<Number>);
@@ -23,7 +23,7 @@ Number swapped_bytes(Number number) noexcept {
   }
 }
 
-/// Reads a number at any address.
+/// Reads a number at an address, which need not be aligned.
 template <class Number>
 Number number_at(const char* bytes, std::endian order) noexcept {
   Number number{};
@@ -31,7 +31,7 @@ Number number_at(const char* bytes, std::endian order) noexcept {
   return order == std::endian::native ? number : swapped_bytes(number);
 }
 
-/// Writes a number to any address; returns where it ends.
+/// Writes a number to an address, which need not be aligned; returns the address after the number.
 template <class Number>
 char* put_number(char* bytes, Number number, std::endian order) noexcept {
   if (order != std::endian::native) number = swapped_bytes(number);

@@ -7,7 +7,7 @@
 
 namespace meshorder {
 
-/// The first digits of a decimal text, at most 7: how many they are, and the number that they form.
+/// The digits at the beginning of a text: how many there are, and, if at most 7, the number that they form.
 struct Digits {
   int count = 0;  ///< 8 means eight or more; then `number` is 0
   std::uint32_t number = 0;

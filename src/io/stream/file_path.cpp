@@ -23,8 +23,8 @@ namespace meshorder {
 namespace fs = std::filesystem;
 namespace {
 
-/// Reads the first bytes of a file, a large one on all threads. Returns how many bytes it read; fewer than
-/// `into` holds if the file ends.
+/// Fills `into` with the first bytes of a file, on all threads if `into` is large. Returns how many bytes it
+/// read: fewer than `into` holds if the file ends.
 std::size_t read_on_threads(InputFile& file, std::span<char> into) {
   constexpr Offset kAtOnce = Offset{16} << 20;
   if (std::ssize(into) <= kAtOnce) return file.read(into);
@@ -64,7 +64,7 @@ std::string read_sized(InputFile& file, const std::string& name, std::uint64_t w
   return bytes;
 }
 
-/// Calls `read`, which fills a buffer, until it puts nothing there. Returns all bytes.
+/// Calls `read`, which fills a buffer and returns the number of bytes, until it returns 0. Returns all bytes.
 template <class Read>
 std::string all_of(const Read& read, const std::string& name) {
   constexpr std::size_t kPart = std::size_t{1} << 20;
@@ -84,7 +84,7 @@ std::string all_of(const Read& read, const std::string& name) {
 /// Returns the bytes of a file, at most `most` of them; of a pipe, all bytes.
 std::string read_from_disk(const FilePath& path, std::uint64_t most) {
   InputFile file = path.open();
-  // files of /proc have no size either
+  // pipes and files of /proc report the size 0
   if (file.size() == 0)
     return all_of([&](std::vector<char>& part) { return file.read(part); }, path.string());
   return read_sized(file, path.string(), std::min(file.size(), most));

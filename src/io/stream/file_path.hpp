@@ -14,7 +14,7 @@
 
 namespace meshorder {
 
-/// Returns the path without the ".gz" (in any case) at its end, if it has one.
+/// Returns the path without the ".gz" (upper or lower case) at its end, if it has one.
 std::filesystem::path without_gz(std::filesystem::path path);
 
 /// Returns the rest of a stream; `name` is for messages. Throws InputError for a stream that does not end
@@ -69,7 +69,7 @@ class FilePath {
 
   /// Returns whether the file exists; false also if the system denies access.
   [[nodiscard]] bool exists() const;
-  /// Returns whether it exists and is a file, not a folder.
+  /// Returns whether the file exists and is a regular file, not a folder or a device.
   [[nodiscard]] bool is_file() const;
   [[nodiscard]] bool is_empty() const;
   /// Returns whether two paths lead to one file.
@@ -87,7 +87,7 @@ class FilePath {
   /// Returns the file of that name in the same folder.
   [[nodiscard]] FilePath beside(const std::filesystem::path& name) const;
   /// Returns the companion file with that extension: "mesh.ele" for "mesh.node", "mesh.ele.gz" for
-  /// "mesh.node.gz". Returns this file if it has the extension, in any case.
+  /// "mesh.node.gz". Returns this file if it has the extension, in upper or lower case.
   [[nodiscard]] FilePath companion(std::string_view extension) const;
 
  private:

@@ -6,7 +6,7 @@
 #include <meshorder/error.hpp>
 
 #ifdef MESHORDER_HAS_ZLIB
-#define ZLIB_CONST  // its input is not written to
+#define ZLIB_CONST  // zlib takes its input as const
 #include <zlib.h>
 
 #include <algorithm>
@@ -27,13 +27,13 @@ bool is_gzip(const std::string& bytes) { return bytes.starts_with("\x1f\x8b"); }
 #ifdef MESHORDER_HAS_ZLIB
 
 constexpr std::size_t kInflateStep = std::size_t{1} << 20;
-/// Larger than the blocks that the C library keeps for later use when they are freed.
+/// Bytes of a block. The C library keeps smaller blocks for later use when they are freed.
 constexpr std::size_t kInflateBlock = 33 * kInflateStep;
 
 /// Bytes in blocks, which do not move when more bytes are added.
 class InflatedBlocks {
  public:
-  /// Returns the place of the next bytes, at most `kInflateStep` of them.
+  /// Returns space for the next bytes, at most `kInflateStep` of them.
   std::span<char> next() {
     if (used_ == kInflateBlock * blocks_.size())
       blocks_.push_back(std::make_unique_for_overwrite<char[]>(kInflateBlock));

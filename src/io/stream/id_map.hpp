@@ -26,7 +26,7 @@ class IdMap {
     }
     if (find(id) >= 0) return false;
     if (ids_.empty()) {
-      // no longer consecutive: from now on every id is kept
+      // the ids are no longer consecutive: from now on every id is kept
       for (Index i = 0; i < size_; ++i) keep(first_ + i, i);
     }
     keep(id, size_);
@@ -92,7 +92,7 @@ class IdMap {
 
   Index size_ = 0;
   std::int64_t first_ = 0;
-  std::vector<std::int64_t> ids_;  // empty as long as they are consecutive
+  std::vector<std::int64_t> ids_;  // empty as long as the ids are consecutive
   std::vector<Index> table_;       // id → position or −1
   std::unordered_map<std::int64_t, Index> sparse_;
 };

@@ -31,9 +31,9 @@ struct NumberReader {
   }
   double finite(std::string_view what);
 
-  /// Reads a count of items that take at least that many bytes each (see Scanner::count).
+  /// Reads a count of items that take at least `text_bytes` or `binary_bytes` each (see Scanner::count).
   Index count(std::string_view what, std::int64_t text_bytes, std::int64_t binary_bytes);
-  /// Checks a count that was read already; `bytes` is the minimum in the file's encoding.
+  /// Checks a count that was read already. `bytes`: least bytes of an item in the file's encoding.
   [[nodiscard]] Index checked_count(std::int64_t number, std::string_view what, std::int64_t bytes) const;
 
   // ---- text, also in binary files

@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kFlushAt = std::size_t{1} << 20;
-constexpr std::size_t kNoCopyAt = std::size_t{1} << 16;  // so many bytes or more are written without a copy
-constexpr std::size_t kSyncAt = std::size_t{32} << 20;   // bytes after which they begin to go to the disk
+constexpr std::size_t kNoCopyAt = std::size_t{1} << 16;  // texts of this size or more are not copied
+constexpr std::size_t kSyncAt = std::size_t{32} << 20;   // after this many bytes, writing to the disk begins
 constexpr mode_t kMode = 0666;                           // the umask or the folder's default ACL removes bits
 constexpr mode_t kPrivateMode = 0600;                    // until the new file gets the mode of the old file
 

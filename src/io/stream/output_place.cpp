@@ -53,8 +53,8 @@ void refuse_link_of_others(const fs::path& link) {
                    "name the file itself");
 }
 
-/// Throws InputError if one of the folders or the file that this program named is a symbolic link: the owner
-/// of the folder above may have put it there to have another file replaced.
+/// Throws InputError if the file, or one of the folders that this program named, is a symbolic link: another
+/// user may have put the link there to have some other file replaced.
 void refuse_links_in_derived(const FilePath& file) {
   if (!file.folder()) return;
   fs::path path = file.path();

@@ -13,7 +13,7 @@ struct OutputPlace {
   std::filesystem::path path;  ///< with all symbolic links followed
   bool exists = false;
   bool is_through = false;   ///< a device, a pipe or an open file of this process: nothing to replace
-  int own_descriptor = -1;   ///< of an open file of this process, such as /dev/stdout
+  int own_descriptor = -1;   ///< of an open file of this process, such as /dev/stdout; else −1
   unsigned other_names = 0;  ///< hard links besides this one
 };
 
@@ -22,7 +22,7 @@ std::filesystem::path folder_of(const std::filesystem::path& path);
 
 /// Returns where a path leads, with all symbolic links followed. Throws InputError for a folder, for links in
 /// a circle, for a name that the file system refuses, and for a link of another user in a folder open to all.
-/// If this program named the file or a part of its path, throws it also for a link in that part, a device or
+/// If this program named the file or a part of its path, also throws for a link in that part, a device or
 /// a pipe.
 OutputPlace output_place(const FilePath& file);
 

@@ -15,12 +15,13 @@
 
 namespace meshorder {
 
-/// Marks that the current thread reads one mesh: adds up the sizes of its files and the memory that they
-/// claim beyond that, and holds the folders that may contain files that they name.
+/// The time in which the current thread reads one mesh. Sums the sizes of the mesh's files and the claims:
+/// memory for data that these files announce but do not hold. Lists folders of files that the mesh may name.
 ///
-/// All claims of a mesh together must not exceed a limit: `memory`, else the limit that the process was
-/// given, else 256 MiB plus 100 times the size of the mesh's files, but at most `memory_limit()`. Outside of
-/// any scope, each single claim may take `memory_limit()`.
+/// The claims of a mesh together must not exceed a limit. The limit is `memory`; else the limit that the
+/// process was given; else 256 MiB plus 100 times the size of the mesh's files, but at most `memory_limit()`.
+/// If no ReadScope exists,
+/// each single claim may take `memory_limit()`.
 class ReadScope {
  public:
   /// @param file             the mesh, for messages; must outlive this object

@@ -17,7 +17,7 @@ namespace meshorder {
 namespace {
 
 constexpr std::size_t kMostParts = 64;
-constexpr std::size_t kNumberBytes = 24;  // for each number left, bytes of text to examine first
+constexpr std::size_t kNumberBytes = 24;  // assumed bytes of a number, to choose how much text to examine
 
 bool is_separator(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 
@@ -35,7 +35,7 @@ std::size_t words_in(std::string_view text) {
       std::memcpy(&bytes, text.data() + at, sizeof(bytes));
       const std::uint64_t of_words = (bytes | ((bytes & ~kHighest) + kOnes * 0x5FU)) & kHighest;
       const std::uint64_t starts = (of_words & ~(of_words << 8U | before)) >> 7U;
-      words += starts * kOnes >> 56U;  // the sum of its bytes
+      words += starts * kOnes >> 56U;  // the sum of the bytes of `starts`
       before = of_words >> 56U;
     }
   }
@@ -86,8 +86,8 @@ std::vector<std::size_t> first_words(const std::vector<std::string_view>& parts)
   return first;
 }
 
-/// Reads as many numbers as `values` holds. Its bytes are those of the whole part if all words are numbers,
-/// and nothing else is there.
+/// Reads as many numbers as `values` holds. The result's `bytes` is the size of the part if that part holds
+/// nothing after these numbers but separators.
 template <class Number>
 RegularNumbers read_part(std::string_view part, std::span<Number> values) {
   RegularNumbers read;
@@ -115,8 +115,8 @@ RegularNumbers read_part(std::string_view part, std::span<Number> values) {
   return read;
 }
 
-/// Reads `count` numbers of a text by `read_one(part, first, count)`, which reads some of them into their
-/// places.
+/// Reads `count` numbers of a text. `read_one(part, first, count)` reads the `count` numbers of a part; the
+/// first of them is number `first` of the text.
 RegularNumbers read_parts(std::string_view text, std::size_t count, std::size_t part_bytes,
                           const std::function<RegularNumbers(std::string_view part, std::size_t first,
                                                              std::size_t count)>& read_one) {

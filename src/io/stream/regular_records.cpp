@@ -14,7 +14,7 @@ namespace meshorder {
 namespace {
 
 constexpr std::size_t kPartsAtOnce = 64;
-constexpr std::size_t kLineBytes = 64;  // for each line left, bytes of text to examine first
+constexpr std::size_t kLineBytes = 64;  // assumed bytes of a line, to choose how much text to examine
 
 /// Some whole lines of a text.
 struct TextPart {
@@ -22,11 +22,11 @@ struct TextPart {
   std::size_t end = 0;
   std::int64_t lines = 0;
   std::int64_t record_lines = 0;
-  bool has_other_ends = false;  ///< lines that end in CR alone, which are not counted
+  bool has_other_ends = false;  ///< has lines that end in CR alone; `lines` does not count them
 
-  // set when the part has been read
+  // set after all parts are counted
   std::int64_t first_line = 0;
-  std::int64_t record_lines_before = 0;  ///< in the parts before, and of records that were read before
+  std::int64_t record_lines_before = 0;  ///< lines of all records before this part
   bool is_regular = false;
 };
 
@@ -42,7 +42,7 @@ struct Records {
   }
 };
 
-/// Counts all lines of a part, and those of records, as a Scanner does.
+/// Counts the lines of a part, and among them those of records, as a Scanner does.
 void count_lines(std::string_view text, char comment, const Records& records, TextPart& part) {
   const std::string_view whole = text.substr(part.begin, part.end - part.begin);
   const bool has_returns = whole.find('\r') != std::string_view::npos;
@@ -62,8 +62,8 @@ void count_lines(std::string_view text, char comment, const Records& records, Te
   }
 }
 
-/// Divides the text from `begin` on into parts, up to where that many lines usually end. A file may have
-/// many short runs of records, and none of them may cost a pass over the rest of the text.
+/// Divides the text from `begin` on into parts, up to the estimated end of `lines` lines. The estimate keeps
+/// short runs of records cheap: a run must not cost a pass over the rest of the text.
 std::vector<TextPart> divided(std::string_view text, std::size_t begin, std::size_t bytes,
                               std::size_t lines) {
   std::vector<TextPart> parts;
@@ -77,8 +77,8 @@ std::vector<TextPart> divided(std::string_view text, std::size_t begin, std::siz
   return parts;
 }
 
-/// Reads the records from `record` to `last` − 1, up to the first irregular one, which it returns. `in` is
-/// then after the record before that.
+/// Reads the records from `record` to `last` − 1, up to the first irregular one. Returns the number of the
+/// first record that was not read, and moves `in` after the record before it.
 std::int64_t read_one_by_one(Scanner& in, std::int64_t record, std::int64_t last, const Records& records) {
   Scanner at = in;
   try {
@@ -90,7 +90,7 @@ std::int64_t read_one_by_one(Scanner& in, std::int64_t record, std::int64_t last
       if (records.may_be_blank) (void)at.raw_line();
       in.move_to(at);
     }
-  } catch (const InputError&) {  // the caller finds it again
+  } catch (const InputError&) {  // the caller reads the record again and gets the error
   }
   return record;
 }
@@ -115,7 +115,7 @@ void read_records_of(Scanner& at, Index count, const Records& records, TextPart&
 }
 
 Index read_lines(Scanner& in, Index count, const Records& records, std::size_t part_bytes) {
-  if (thread_count() == 1) {  // lines need not be counted first
+  if (thread_count() == 1) {  // one thread need not count lines first
     return static_cast<Index>(read_one_by_one(in, 0, count, records));
   }
   const std::string_view text = in.all();

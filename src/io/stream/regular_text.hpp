@@ -83,7 +83,7 @@ std::size_t count_words(std::string_view text);
 ///              record is also not regular if `read` throws an InputError, if more words follow on its last
 ///              line, or if it has another number of lines
 /// @param part_bytes  least size of a part, > 0
-/// @param lines       of each record
+/// @param lines       number of lines of each record, > 0
 /// @note O(bytes); memory: a few numbers for each part.
 Index read_regular_records(Scanner& in, Index count, const std::function<bool(Scanner&, Index)>& read,
                            std::size_t part_bytes = std::size_t{1} << 20, Index lines = 1);
@@ -107,9 +107,9 @@ void read_records(Scanner& in, Index count, const Read& read) {
   for (Index record = regular; record < count; ++record) read(in, record);
 }
 
-/// Reads records as `read_regular_records` does; a record is regular only if it begins with a number that is
-/// one more than that of the last record; reads nothing if a number could be outside of `least` … `most`.
-/// Adds the numbers to `numbering`, which is empty before.
+/// Reads records as `read_regular_records` does. A record is regular only if it begins with a number that is
+/// one more than the number of the record before. Reads nothing if a number could be outside of `least` …
+/// `most`. Adds the numbers to `numbering`, which must be empty.
 template <class Read>
 Index read_numbered_records(Scanner& in, Index count, IdMap& numbering, const Read& read,
                             std::int64_t least = -(std::int64_t{1} << 40),

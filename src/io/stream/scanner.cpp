@@ -27,7 +27,7 @@ Scanner::Scanner(const FilePath& file, char comment)
       text_(without_byte_order_mark(*whole_)),
       comment_(comment) {
   if (text_.empty()) throw InputError(file_, "is empty", "give a mesh file");
-  constexpr std::string_view kWide("\xFE\xFF\0", 3);  // little-endian text has the zero as its fourth byte
+  constexpr std::string_view kWide("\xFE\xFF\0", 3);  // in little-endian UTF-16 the zero is the fourth byte
   const bool is_wide = text_.starts_with(kWide) || (text_.starts_with("\xFF\xFE") && text_.find('\0') == 3);
   if (is_wide) throw InputError(file_, "is text in UTF-16", "save it in UTF-8");
 }

@@ -34,8 +34,8 @@ class Scanner {
   /// @param byte  0 … size of the text
   /// @param line  of that byte
   [[nodiscard]] Scanner at(std::int64_t byte, std::int64_t line) const;
-  /// Returns a scanner of all bytes of the file from the first one on. A scanner skips three bytes that look
-  /// like a byte order mark, but in a binary file they may be data.
+  /// Returns a scanner of all bytes of the file. Other scanners skip the byte order mark of UTF-8; in a
+  /// binary file its three bytes may be data.
   [[nodiscard]] Scanner of_all_bytes() const;
   /// Moves to where another scanner of the same text is, which may have skipped comments. O(1).
   void move_to(const Scanner& other);
@@ -70,7 +70,7 @@ class Scanner {
   /// Skips blanks and comments on this line only; returns true at its end.
   bool at_line_end() {
     if (skip_spaces()) return false;
-    if (text_[position_] == '\n') return true;  // as at most line ends
+    if (text_[position_] == '\n') return true;  // most lines end here
     skip_blanks();
     return at_break();
   }
@@ -142,8 +142,8 @@ class Scanner {
     }
     return true;
   }
-  /// Takes a number of at most seven digits alone that ends before a space or line feed; otherwise returns
-  /// false, and skips only spaces and line feeds. Most numbers of a mesh have this form.
+  /// Takes a number of at most seven digits, without sign or point, that ends before a space or line feed.
+  /// Otherwise returns false, and skips only spaces and line feeds. Most numbers of a mesh have this form.
   template <class T>
   bool take_digits(T& value);
   template <class T>
@@ -151,7 +151,7 @@ class Scanner {
 
   std::string file_;
   std::shared_ptr<const std::string> whole_;  ///< shared by scanners of one text
-  std::string_view text_;                     ///< part of the text; a zero byte follows it
+  std::string_view text_;                     ///< part of `*whole_`; a zero byte follows it
   std::size_t position_ = 0;
   std::int64_t line_ = 1;
   std::size_t last_comment_ = 0;

@@ -36,13 +36,14 @@ namespace {
 constexpr const char* kLock = "lock";
 constexpr std::size_t kDigits = 16;
 
-/// Folders beyond `descriptors_for_locks` are not locked, and no other process cleans these up.
+/// Number of locked scratch folders. Those beyond `descriptors_for_locks` are not locked, and no other
+/// process removes them.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): descriptors are the process's
 std::atomic<std::size_t> locks_held = 0;
 
 // ---- folders that a signal handler removes
 
-/// Paths of scratch folders, each in memory of its own. Whoever takes a path out of its slot owns it.
+/// Paths of scratch folders, allocated one by one. The function that takes a path out of its slot owns it.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing else
 std::array<std::atomic<char*>, 1024> unfinished{};
 

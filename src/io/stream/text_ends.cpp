@@ -7,7 +7,7 @@ namespace {
 constexpr std::string_view kBlanks = " \t\f\v";
 constexpr std::string_view kLineEnds = "\r\n";
 
-/// Returns the first byte that is neither blank nor line end; the end of the text if there is none.
+/// Returns the position of the first byte that is neither blank nor line end; if none, the size of the text.
 std::size_t first_mark(std::string_view text, std::size_t from) {
   while (from < text.size() && (kBlanks.find(text[from]) != std::string_view::npos ||
                                 kLineEnds.find(text[from]) != std::string_view::npos)) {
