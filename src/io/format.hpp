@@ -113,15 +113,14 @@ Mesh read_mesh_from(const FilePath& path, const ReadOptions& options = {});
 /// in place. Returns nothing if the cells stay in their places.
 std::optional<Permutation> write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options);
 
-/// As the public function, for a valid mesh.
+/// As the public `reorder`, for a valid mesh.
 ///
 /// @param graph    the vertex graph; computed if there is none
 /// @param ordered  called with the graph and the new order of vertices, before the mesh moves
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph> graph,
                   const std::function<void(const CsrGraph&, const Permutation&)>& ordered);
 
-// Chooses between the two formats of the extension .inp, Abaqus decks and AVS UCD; says which formats have
-// numbers.
+// The extension .inp belongs to two formats: Abaqus decks and AVS UCD. Files of some formats have numbers.
 
 /// As `format_of`, for a file to be read: .inp is AVS UCD if the file's first bytes look like it, else
 /// Abaqus. Throws InputError for an .inp file that cannot be read.

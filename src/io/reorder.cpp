@@ -150,7 +150,7 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGr
       MeshOrder order = compute_order_in_file(mesh, *graph, of_arranged);
       const Format* const to = format_to_write(mesh, options.format);
       if (ordered) ordered(*graph, order.vertices.permutation);
-      graph.reset();  // its memory serves the moved arrays
+      graph.reset();  // frees memory for the moved arrays
       move_with_ids(mesh, order.vertices.permutation, order.cells.permutation, options.ids);
       if (arranged) order.cells.permutation = arranged->then(order.cells.permutation);
       if (to != nullptr && to->settle_cells != nullptr)

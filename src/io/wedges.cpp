@@ -8,9 +8,9 @@
 namespace meshorder {
 namespace {
 
-/// Three edges from the first corner of a cell, right-handed if its volume is positive.
+/// The edges from a cell's first corner to three others; right-handed if the cell's volume is positive.
 struct Handedness {
-  std::size_t corners;  ///< 0 for shapes that are not counted
+  std::size_t corners;  ///< number of corners; 0 for shapes whose volumes are ignored
   std::array<std::size_t, 3> ends;
 };
 

@@ -32,8 +32,8 @@ struct DeckCard {
 
 struct Deck : DeckContents {
   std::vector<DeckCard> sections;
-  /// Ends of some lines, from a comma on, by position in the file. For a node: the text after the
-  /// coordinates. For an element: the text after the last node that its type needs.
+  /// Ends of some data lines, from a comma on, by the position of the node or element in the file. For a
+  /// node: the text after the
   std::map<Index, std::string> more_of_nodes;
   std::map<Index, std::string> more_of_elements;
 };

@@ -91,7 +91,7 @@ bool pairs_sets(const Card& card, std::string_view lines);
 bool depends_on_numbers(const Card& card);
 
 /// Returns all positive whole numbers in the lines of a card that are the value of a parameter, or the whole
-/// content of a field below its keyword.
+/// content of a field below the keyword.
 std::vector<std::int64_t> numbers_in(std::string_view lines);
 
 }  // namespace meshorder::abaqus

@@ -11,9 +11,9 @@
 namespace meshorder::abaqus {
 namespace {
 
-/// The part of a type's name before the digits. They are the number of nodes. In names of beams, the last
-/// digit is the order of interpolation: beams of order 1 and 3 (cubic) have two nodes, beams of order 2 have
-/// three.
+/// The part of a type's name before the digits. These digits are the number of nodes. In names of beams, the
+/// last digit is the order of interpolation: beams of order 1 and 3 (cubic) have two nodes, beams of order 2
+/// have three.
 struct Prefix {
   std::string_view name;
   int dimension;

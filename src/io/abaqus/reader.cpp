@@ -74,7 +74,7 @@ template <class T>
   return true;
 }
 
-/// A place in the deck: the position of its file in `files_`, and a line.
+/// A place in the deck: the index of a file in `files_`, and a line of this file.
 struct Place {
   Index file;
   std::int64_t line;
@@ -611,11 +611,11 @@ class DeckReader {
   std::vector<LaterNode<Place>> later_nodes_;
   std::vector<NodeLine> node_lines_;                 // buffer for regular lines
   std::vector<ElementLine> element_lines_;           // likewise
-  std::vector<Index> element_nodes_;                 // their vertices, in the order of cells
-  std::vector<std::string> files_;                   // files that were read, one after the other
+  std::vector<Index> element_nodes_;                 // vertices of these elements, in the order of cells
+  std::vector<std::string> files_;                   // names of the files in the order of reading; may repeat
   std::unordered_set<std::int64_t> other_elements_;  // numbers of elements that are not cells
   SetReader sets_{*deck_, mesh_.cells, other_elements_};
-  std::vector<std::string> other_types_;  // the first of their types, for a message
+  std::vector<std::string> other_types_;  // types that are not cells, the first few, for a message
   std::vector<std::string> types_;
   std::int64_t line_ = 0;  // line of the last keyword
   int parts_ = 0;

@@ -26,11 +26,11 @@
 namespace meshorder::abaqus {
 namespace {
 
-constexpr std::size_t kPerLine = 16;  // numbers
+constexpr std::size_t kPerLine = 16;  // numbers on a line
 
 /// Returns the deck that a mesh was read from; null if there is none or if the mesh no longer fits it.
 const AbaqusMetadata* deck_of(const Mesh& mesh) {
-  std::size_t at = 0;  // of the card of element k
+  std::size_t at = 0;  // index of the card of element k
   return own_deck<Deck>(mesh, [&](const Deck& deck, Index k, Shape shape, int vertices) {
     const auto has_element = [k](const DeckCard& card) {
       return card.part == CardKind::elements && k < card.first + card.count;
@@ -378,18 +378,18 @@ class DeckWriter {
 
   const Mesh& mesh_;
   const AbaqusMetadata* own_;  // null if the mesh has no deck
-  AbaqusMetadata plain_;       // the deck in this case
+  AbaqusMetadata plain_;       // the deck of a mesh without one
   const Deck& deck_;
   DeckNumbers numbers_;
   Notes& notes_;
   OutputFile file_;
   bool within_line_ = false;
-  std::atomic<std::int64_t> rounded_ = 0;  ///< coordinates
+  std::atomic<std::int64_t> rounded_ = 0;  ///< number of rounded coordinates
   TextByPlace more_of_nodes_;
   TextByPlace more_of_elements_;
   bool same_numbers_;
   std::vector<std::pair<std::string, const DeckCard*>> sets_of_cards_;  ///< sets still to be written
-  std::unordered_set<std::string> words_of_sets_;  ///< first word of each of their names, in capitals
+  std::unordered_set<std::string> words_of_sets_;  ///< first words of the names of these sets, in capitals
 };
 
 bool holds(const Mesh& mesh, Shape shape, int vertices) {

@@ -53,8 +53,8 @@ std::span<const int> vtk_order(Shape shape, int nodes);
 // ---- names of the arrays that keep data of Gmsh's files
 
 inline constexpr std::string_view kCellEntity = "gmsh:geometrical";    ///< tag of each cell's entity
-inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< if not the cell's dimension
-inline constexpr std::string_view kCellType = "gmsh:type";  ///< if shape and node count do not determine it
+inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< of the entity, if not the cell's
+inline constexpr std::string_view kCellType = "gmsh:type";  ///< if shape and number of nodes do not give it
 inline constexpr std::string_view kCellPartitions = "gmsh:partitions";  ///< 2.2: tags from the third on
 inline constexpr std::string_view kCellTagCount = "gmsh:tag_count";     ///< 2.2: if it differs among cells
 inline constexpr std::string_view kCellGhosts = "gmsh:ghosts";    ///< owner, number of ghosts, ghosts, zeros
@@ -158,8 +158,8 @@ struct ReadContext {
 
 Mesh read(const FilePath& path, Notes& notes);
 
-/// Reads the line $EndSECTION ($ENDSECTION in version 1). Another word that begins with $End, in any case,
-/// also ends the section, with a note.
+/// Reads the line $EndSECTION ($ENDSECTION in version 1). Another word that begins with $End, in upper or
+/// lower case, also ends the section, with a note.
 void expect_end(ReadContext& reading, std::string_view section);
 
 /// Reads the number of a node or element, or a count of the same width (see `has_wide_numbers`).
@@ -193,10 +193,10 @@ inline Index place_of_node(const ReadContext& reading, std::int64_t id, std::str
 /// Adds a dense array to the mesh.
 void keep_array(Mesh& mesh, std::string_view name, Association association, Index components, Values values);
 
-/// Adds the array kCellType if shape and count do not determine the type of every cell.
+/// Adds the array kCellType if shape and number of nodes do not determine the type of every cell.
 void keep_unusual_types(Mesh& mesh, const std::vector<std::int32_t>& numbers);
 
-/// Adds the array kNodeParameters with these values; nodes after the last one have no parameters.
+/// Adds the array kNodeParameters with these values; nodes beyond these values have none.
 void keep_parameters(Mesh& mesh, std::vector<double> values);
 
 /// Fails if `rows` contains a row twice; `section` is for the message. O(rows · log rows).
@@ -305,7 +305,7 @@ struct WriteContext {
   std::vector<std::int32_t> cell_tags;        ///< 4.1: of each cell's entity
   std::vector<std::int32_t> node_entities;    ///< 4.1, $ParametricNodes: dimension and tag for each node
   std::vector<const DataArray*> placed;       ///< arrays that other sections hold: they need no view
-  NamedParts parts;                           ///< of the mesh
+  NamedParts parts;                           ///< arrays and sets of the mesh, by name
 
   [[nodiscard]] std::int64_t node_id(Index v) const { return node_ids.empty() ? v + 1 : node_ids[v]; }
   [[nodiscard]] std::int64_t cell_id(Index c) const { return cell_ids.empty() ? c + 1 : cell_ids[c]; }
@@ -324,8 +324,8 @@ void classify(GmshMetadata& layout, WriteContext& output, Notes& notes);
 /// Adds a view for an array that has no view yet, or a note if Gmsh has no place for it.
 void add_view(GmshMetadata& layout, const DataArray& array, Notes& notes);
 
-/// Adapts the views of arrays that were replaced to the components of the new arrays. A view that has no
-/// place for its new array loses the array. Notes changes.
+/// If an array of a view was replaced, adapts the view to the components of the new array. A view that cannot
+/// hold the new array gets no array. Notes changes.
 void refit_views(GmshMetadata& layout, const NamedParts& parts, Notes& notes);
 
 /// Returns a name that fits between double quotes in one line.

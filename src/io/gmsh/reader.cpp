@@ -80,7 +80,7 @@ void read_format(ReadContext& reading) {
   reading.metadata.sections.push_back({SectionKind::format, "MeshFormat", "", 0});
 }
 
-/// Keeps the text since that byte as a section, which ends here.
+/// Keeps the text from `begin` to the scanner as a section, and reads the line that ends the section.
 void keep_verbatim(ReadContext& reading, std::string_view section, std::int64_t begin) {
   const Scanner& in = reading.source.scanner;
   const std::string_view text = in.all().substr(begin, in.byte() - begin);

@@ -137,7 +137,7 @@ class GraphReader {
             fmt::format("1 to {} are possible", mesh_.vertex_count()));
   }
 
-  /// Returns how many neighbours a vertex has whose line has so many words.
+  /// Returns the number of neighbours of a vertex whose line has `words` words.
   [[nodiscard]] Offset neighbours_in(int words) const {
     const int after_weights = std::max(0, words - weights_ - (has_sizes_ ? 1 : 0));
     return has_edge_weights_ ? (after_weights + 1) / 2 : after_weights;

@@ -75,7 +75,7 @@ inline constexpr std::array kReferenceKinds{
     ReferenceKind{"RequiredTriangles", Form::list, "t"},
     ReferenceKind{"RequiredQuadrilaterals", Form::list, "q"},
     ReferenceKind{"RequiredTetrahedra", Form::list, "k"},
-    ReferenceKind{"ParallelTriangles", Form::list, "t"},  // the last two are ParMmg's
+    ReferenceKind{"ParallelTriangles", Form::list, "t"},  // this and the next are ParMmg's
     ReferenceKind{"ParallelQuadrilaterals", Form::list, "q"},
     ReferenceKind{"NormalAtVertices", Form::table, "v"},
     ReferenceKind{"TangentAtVertices", Form::table, "v"},
@@ -143,7 +143,7 @@ struct MeditMetadata final : FormatMetadata {
     std::string text;  ///< verbatim, from the keyword on
     bool before_vertices;
   };
-  /// A section of rows, or a table in which two rows are of the same item.
+  /// A section of rows, or a table in which two rows name the same item.
   struct Rows {
     std::string keyword;
     std::string columns;

@@ -306,7 +306,7 @@ class Reader {
     last_keyword_ = keyword;
   }
 
-  /// Returns the first vertex or cell that positions of a target refer to, and their number.
+  /// Returns the first vertex or cell that positions of a target refer to, and the number of these.
   std::pair<Index, Index> range_of(const Target& target, Index needed) {
     if (!target) return {0, mesh_.vertex_count()};
     const std::size_t kind = counted_kind(*target, counts_);

@@ -25,7 +25,7 @@ constexpr std::size_t kLargeFields = 4;
 
 /// Returns the end of the line that begins there, its line end included.
 std::size_t end_of_line(std::string_view text, std::size_t begin) {
-  constexpr std::size_t kUsual = 128;  // so that a text without line feeds is not searched for each line
+  constexpr std::size_t kUsual = 128;  // a text without line feeds is not searched to its end for each line
   const std::string_view ahead = text.substr(begin, kUsual);
   const std::size_t feed = ahead.find('\n');
   std::string_view line = ahead.substr(0, feed);
@@ -106,8 +106,8 @@ class Splitter {
     }
   }
 
-  /// Compares the name of a line with the one at the end of the line before, of which Nastran does not read
-  /// the first column, be it a mark or a letter.
+  /// Compares the name of a line with the name at the end of the line before. Of the latter, Nastran does not
+  /// read the first column, whether that is a mark or a letter.
   void check_name(std::string_view name) {
     const std::string_view own = line_name(name);
     if (own.empty() || line_name(next_name_).empty() || own == line_name(next_name_)) return;
@@ -332,7 +332,7 @@ std::string shortest(double value) {
 RealText real_text(double value) {
   std::string text = shortest(value);
   double rounded = value;
-  // one digit more would give all digits of the value
+  // with a precision of 16, the text has all digits of the value
   for (int digits = 15; digits > 0 && text.size() > kLargeWidth; --digits) {
     std::array<char, 40> buffer{};
     char* const begin = buffer.data();

@@ -29,9 +29,7 @@ class Cards {
 
   /// Moves to the next card; returns false if there is none.
   bool next();
-  /// Returns where the card is.
   [[nodiscard]] Piece place() const { return card_; }
-  /// Returns the lines of the card.
   [[nodiscard]] std::string_view lines() const { return card_.of(text_); }
   /// Returns whether the card is a continuation line that has no card before it.
   [[nodiscard]] bool is_orphan() const { return is_orphan_; }
@@ -45,7 +43,7 @@ class Cards {
 };
 
 /// Divides a text of whole lines, or a part of it, into parts of `bytes` or more that contain whole cards.
-/// Lines that begin with a letter begin a card, so each part begins there. O(parts) time if most lines do.
+/// Each part begins with a line that begins with a letter and thus a card. O(parts) if most lines do so.
 std::vector<Piece> parts_of_cards(std::string_view text, Piece whole, std::size_t bytes);
 
 /// A field of a card.
@@ -106,7 +104,7 @@ void append_card(std::string& out, std::string_view name, const std::vector<std:
 /// A real number as a field.
 struct RealText {
   std::string text;         ///< at most 16 characters
-  bool is_rounded = false;  ///< whether it reads back to another number
+  bool is_rounded = false;  ///< whether the text reads back to another number
 };
 
 /// Returns the shortest text that reads back to the same bits. If it has more than 16 characters, returns the

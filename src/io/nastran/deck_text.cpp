@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kTab = 8;
 
-/// Returns whether a line begins with that word, in any case, and the word ends there.
+/// Returns whether a line begins with that word, in upper or lower case, and the word ends there.
 bool begins_with(std::string_view line, std::string_view word) {
   constexpr int kCase = 'a' - 'A';
   if (line.size() < word.size() || (line.front() | kCase) != (word.front() | kCase)) return false;
@@ -42,8 +42,8 @@ bool has_begin_bulk(std::string_view text) {
   return false;
 }
 
-/// Returns whether a line of bulk data is taken as it is, whatever precedes it. False also for some lines for
-/// which that is true.
+/// Returns true only if a line of bulk data is taken as it is, whatever precedes the line. May return false
+/// for such a line, too.
 bool is_plain(std::string_view line) {
   if (line.ends_with('\r')) line.remove_suffix(1);
   if (line.find('\t') != std::string_view::npos || line.find('\r') != std::string_view::npos) return false;

@@ -18,13 +18,13 @@
 namespace meshorder::nastran {
 namespace {
 
-/// What could not be written as the mesh has it.
+/// Data of the mesh that could not be written unchanged.
 struct Losses {
-  std::atomic<std::int64_t> rounded = 0;  ///< coordinates
-  std::atomic<bool> has_labels = false;   ///< labels that are not numbers of properties
+  std::atomic<std::int64_t> rounded = 0;  ///< number of rounded coordinates
+  std::atomic<bool> has_labels = false;   ///< whether some labels are not valid properties
 };
 
-/// What all cards are written from.
+/// The input from which all cards are written.
 struct Source {
   const Mesh& mesh;
   const Deck& deck;
@@ -134,7 +134,7 @@ class CardWriter {
     append_card(out_, name, texts, deck_.line_end);
   }
 
-  /// Plans to write a number into a field, unless the field has it already.
+  /// Adds a number for a field to `edits_`, unless the field has this number already.
   void edit(std::size_t field, std::int64_t number) {
     if (number_of(fields_.text(field)) != number) edits_.push_back({field, number});
   }
@@ -295,9 +295,9 @@ class BulkWriter {
   /// Most bytes between two nodes or elements that are written together.
   static constexpr std::size_t kBetween = 4096;
   static constexpr Index kAhead = 8;      // items whose text is prefetched
-  static constexpr Index kFarAhead = 16;  // items whose place in the text is
+  static constexpr Index kFarAhead = 16;  // items whose entry in the table of cards is prefetched
 
-  /// A node or an element in the order of the text; the mesh's next one replaces it.
+  /// The slot of a node or an element in the text, and the vertex or cell that is written there.
   struct Item {
     bool is_node;
     Index next;  ///< vertex or cell
@@ -346,7 +346,7 @@ class BulkWriter {
     if (error_) std::rethrow_exception(error_);
   }
 
-  /// Returns where the deck says where the item was that is written.
+  /// Returns the entry of the item in the deck's table of cards: its place in the text of the file.
   [[nodiscard]] const Piece* old_place(Item item) const {
     return item.is_node ? &source_.deck.node_cards[node_at_[item.next]]
                         : &source_.deck.element_cards[element_at_[item.next]].place;
@@ -367,7 +367,7 @@ class BulkWriter {
     }
   }
 
-  /// Keeps the error that is being handled, unless an item before has one.
+  /// Keeps the error that is being handled, unless an earlier item has one.
   void keep_error(Index item) {
     const std::scoped_lock lock(mutex_);
     if (item >= first_with_error_) return;

@@ -31,17 +31,17 @@ struct ElementCard {
 /// A file, and where its nodes and elements are in it.
 struct Deck : DeckContents {
   std::string text;  ///< all lines; lines of included files are in place
-  Piece bulk;        ///< the lines between BEGIN BULK and ENDDATA, or all
+  Piece bulk;        ///< the lines between BEGIN BULK and ENDDATA, or all lines
   std::vector<Piece> node_cards;
   std::vector<ElementCard> element_cards;
   std::vector<Point> points;        ///< of the nodes, in the basic system
-  bool has_default_system = false;  ///< GRDSET gives a system to nodes that name no system
+  bool has_default_system = false;  ///< whether GRDSET gives a system to nodes that name no system
   /// Properties that BAROR and BEAMOR give to elements that name no property, by the name of the elements'
   /// card.
   std::map<std::string_view, std::int64_t> default_properties;
   std::vector<std::int64_t> other_points;    ///< numbers of points that are not nodes, ascending
   std::vector<std::int64_t> other_elements;  ///< numbers of elements that are not cells, ascending
-  std::int64_t last_set = 0;                 ///< the largest number of a set, those of SET3 are in `sets`
+  std::int64_t last_set = 0;                 ///< largest number of a set; `sets` has those of SET3
 };
 
 /// A deck, and where its nodes and elements are in the mesh.
@@ -71,13 +71,13 @@ struct Card {
 
   Piece place;
   Kind kind = Kind::other;
-  bool has_more = false;        ///< whether other fields follow these
+  bool has_more = false;        ///< whether the card has fields that are not stored here
   bool lacks_nodes = false;     ///< whether some nodes of edges are missing, so that only corners count
   std::int64_t number = 0;      ///< of the node or element
   std::int64_t group = kBlank;  ///< system of the node or property of the element; kBlank if it names none
   Point point{};
   const ElementType* type = nullptr;
-  int nodes = 0;                         ///< of the cell
+  int nodes = 0;                         ///< number of the cell's vertices
   std::array<Index, kMostNodes> cell{};  ///< numbers of the nodes, in the order of the cell's vertices
 };
 
@@ -91,7 +91,7 @@ Card parse_card(const Cards& cards, CardFields& fields);
 
 // ---- writing
 
-/// Writes a mesh into its deck; notes the parts that have no place in it.
+/// Writes a mesh into its deck; notes contents of the mesh that the deck cannot hold.
 void write_into_deck(const Mesh& mesh, const BulkMetadata& own, const FilePath& path, Notes& notes);
 
 /// Appends a set as SET3, with its name in a comment. Notes a set without members, which is left out, and a

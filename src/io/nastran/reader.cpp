@@ -136,7 +136,7 @@ class DeckReader {
     mesh_.cells.push_back(type.shape, {cell.data(), static_cast<std::size_t>(card.nodes)});
     deck_->element_cards.push_back({card.place, &type, card.nodes});
     if (type.has_property) {
-      labels_.push_back(card.group);  // if none is named, resolved when all cards are known
+      labels_.push_back(card.group);  // `complete_properties` replaces kBlank
       labelled_.push_back(mesh_.cell_count() - 1);
     }
     if (card.lacks_nodes) ++without_some_;
@@ -381,19 +381,19 @@ class DeckReader {
   Notes& notes_;
   Mesh mesh_;
   std::shared_ptr<Deck> deck_ = std::make_shared<Deck>();
-  Piece card_;  // that is being added
+  Piece card_;  // the card that is being added
   CardFields fields_;
   CoordinateSystems systems_{file_};
   std::int64_t default_system_ = 0;
   std::vector<std::int64_t> system_of_;              // system of each node
-  bool has_systems_ = false;                         // whether any is not the basic one
+  bool has_systems_ = false;                         // whether any of these is not the basic system
   std::vector<LaterNode<std::size_t>> later_nodes_;  // place: the byte of the element
   std::vector<std::int64_t> labels_;
   std::vector<Index> labelled_;
   std::vector<Piece> sets_;
   std::vector<Stranger> strangers_;
   Texts others_;     // names of other cards
-  Texts with_more_;  // names of elements
+  Texts with_more_;  // names of cards of elements with further fields
   std::int64_t without_some_ = 0;
   bool has_more_in_nodes_ = false;
   bool other_since_ = false;  // another card since the last element

@@ -45,10 +45,10 @@ class CoordinateSystems {
     bool by_nodes = false;
     std::int64_t reference = 0;     // system of the points
     std::array<Point, 3> points{};  // the origin, a point on the z-axis, a point in the plane of x and z
-    std::array<std::int64_t, 3> nodes{};  // instead of the points
+    std::array<std::int64_t, 3> nodes{};  // in place of `points`
     std::size_t byte = 0;
     bool has_frame = false;
-    bool is_open = false;  // the search for its frame has not ended
+    bool is_open = false;  // the computation of its frame has begun, not ended
     Frame frame{};
   };
 

@@ -150,7 +150,6 @@ class CentreSums {
   [[nodiscard]] bool is_complete() const { return face_ == sides_.owner.size(); }
   [[nodiscard]] std::size_t faces() const { return face_; }
 
-  /// Adds the next face.
   void add(const Point& centre) {
     add_to(sides_.owner[face_], centre);
     if (face_ < sides_.neighbour.size()) add_to(sides_.neighbour[face_], centre);

@@ -27,7 +27,6 @@ class Base64Encoder {
   unsigned held_ = 0;
 };
 
-/// Encodes all bytes at once.
 std::string to_base64(std::span<const char> bytes);
 
 /// Decodes the beginning of a text until `bytes` is full. Returns false if the text is too short or has other

@@ -5,7 +5,7 @@
 
 namespace meshorder {
 
-/// Returns the decompressed bytes if they are a gzip file, else the bytes as they are.
+/// Returns the bytes that a gzip file decompresses to; returns the bytes of any other file unchanged.
 ///
 /// @param bytes  all bytes of a file
 /// @param file   its path, for errors
@@ -14,8 +14,8 @@ namespace meshorder {
 /// @throws Unavailable for a gzip file in a build without zlib
 std::string uncompressed(std::string bytes, const std::string& file);
 
-/// Returns the first bytes of a file as they are; for a gzip file, the bytes that can be decompressed from
-/// them, at most 1 MiB. Used to find out what a file holds. Throws Unavailable as `uncompressed` does.
+/// As `uncompressed`, for the first bytes of a file, to find out what the file holds. Returns at most 1 MiB
+/// of decompressed bytes. Throws Unavailable as `uncompressed` does.
 std::string uncompressed_start(std::string bytes, const std::string& file);
 
 }  // namespace meshorder

@@ -11,8 +11,8 @@
 namespace meshorder {
 
 /// The ids that a file gives to its vertices or cells, in file order, and a map from ids back to positions,
-/// counted from 0. Consecutive ids take no memory. Other ids take a table while they are dense, else a hash
-/// map.
+/// counted from 0. Consecutive ids take no memory. Other ids are in a table if it has few gaps, else in a
+/// hash map.
 class IdMap {
  public:
   /// Appends the id of the next position. Returns false and leaves the map unchanged if `id` is already

@@ -29,8 +29,8 @@ class OutputSet {
   /// Makes `commit` remove a file of an earlier run, if it exists, that is not part of this set.
   void remove(FilePath path) { removals_.push_back(std::move(path)); }
 
-  /// Makes `commit` first remove an old file without which readers cannot read the other files, for example a
-  /// file that names them. If the process is then killed, the set cannot be read, but it does not mix old and
+  /// Makes `commit` first remove an old file that readers need to read the others, for example a file that
+  /// names them. If the process is then killed, the set cannot be read, but nobody reads a mixture of old and
   /// new files. For outputs without a mark (see `put_in_place`). Add the new version of that file last.
   void remove_first(FilePath path) { removals_first_.push_back(std::move(path)); }
 

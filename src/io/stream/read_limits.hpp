@@ -15,13 +15,12 @@
 
 namespace meshorder {
 
-/// The time in which the current thread reads one mesh. Sums the sizes of the mesh's files and the claims:
-/// memory for data that these files announce but do not hold. Lists folders of files that the mesh may name.
+/// The reading of one mesh by the current thread. Sums the sizes of the mesh's files and the claims: memory
+/// for data that these files announce but do not hold. Lists folders of files that the mesh may name.
 ///
-/// The claims of a mesh together must not exceed a limit. The limit is `memory`; else the limit that the
-/// process was given; else 256 MiB plus 100 times the size of the mesh's files, but at most `memory_limit()`.
-/// If no ReadScope exists,
-/// each single claim may take `memory_limit()`.
+/// The claims of a mesh must not exceed a limit in all: `memory`; else the limit that the process was given;
+/// else 256 MiB plus 100 times the size of the files, but at most `memory_limit()`. Without a ReadScope, each
+/// single claim may take `memory_limit()`.
 class ReadScope {
  public:
   /// @param file             the mesh, for messages; must outlive this object
@@ -54,7 +53,7 @@ class ReadScope {
   ReadScope* outer_;
 };
 
-/// Counts a file that was read as part of the mesh. Reading it again counts as a claim.
+/// Counts a file that was read as part of the mesh. Reading the file again counts as a claim.
 void count_file(const FilePath& file, std::uint64_t bytes);
 
 /// Number of copies of claimed data that may be in memory at the same time: in the reader, in the mesh, in
@@ -70,7 +69,7 @@ inline constexpr std::uint64_t kCopiesOfClaim = 4;
 /// claims do not include them.
 [[nodiscard]] std::string refused_for_a_while(std::uint64_t bytes, std::string_view what);
 
-/// Returns how many bytes of its limit the last mesh read in this process left unclaimed.
+/// Returns how many bytes of its limit were unclaimed after the last mesh that this process read.
 std::uint64_t left_by_last_reading();
 
 /// The advice in messages about a claim that is refused.

@@ -104,7 +104,7 @@ class Su2Reader {
 
   void keep_line() { lines_.append(in_.raw_line()) += '\n'; }
 
-  /// Makes a section of the lines that were kept since the last one.
+  /// Makes a section of the lines that were kept since the last section.
   void keep_lines() {
     if (!lines_.empty()) metadata_->sections.push_back({SectionKind::verbatim, std::exchange(lines_, {})});
   }
@@ -198,7 +198,6 @@ class Su2Reader {
     in_.fail(keyword_ + "= promises more lines than there are", "the count is wrong or lines are missing");
   }
 
-  /// Fails if the line ends before `what`.
   void expect_more(std::string_view what) {
     if (in_.at_line_end()) in_.fail("the line ends before " + std::string(what), "it may be cut short");
   }

@@ -68,7 +68,7 @@ struct Su2Metadata final : FormatMetadata {
                                   ///< same for points and for elements of markers
   bool numbers_points = false;
   bool numbers_marker_elements = false;
-  bool wedges_face_inward = false;  ///< whether their first triangle faces inward, as in Gmsh's files
+  bool wedges_face_inward = false;  ///< whether the first triangle of wedges faces inward, as in Gmsh's files
 
   [[nodiscard]] std::vector<std::string> contents() const override { return keywords; }
   [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> vertices,
@@ -82,7 +82,7 @@ Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
 /// Returns the places of the cells in a file: cells of the highest dimension, then marker by marker. `blocks`
-/// receives the first cell of each part.
+/// receives the first cell of each of these groups.
 Permutation places(const Mesh& mesh, std::vector<Index>& blocks);
 
 }  // namespace meshorder::su2

@@ -45,7 +45,7 @@ struct Markers {
   const Mesh& mesh;
   int dimension;  ///< of the elements; boundary cells have one dimension less
   std::vector<Marker> markers;
-  std::map<std::string, std::size_t, std::less<>> places;  ///< of markers, by name
+  std::map<std::string, std::size_t, std::less<>> places;  ///< positions in `markers`, by name
   DistinctNames names;                                     ///< of the sets' markers
   std::vector<bool> marked;
   Notes notes;

@@ -15,9 +15,9 @@
 /// Declarations shared by the reader and the writer of OBJ files.
 namespace meshorder::obj {
 
-/// A kind of statement, which applies to the cells after it until the next statement of the kind, and the
-/// cell array that records the statement of each cell: 0 for no statement, else a number whose name is in the
-/// metadata. A smoothing group has the number that the file gives it.
+/// A kind of statement, such as usemtl, and its array on cells. A statement applies to the cells up to the
+/// next one of its kind. The array has the number of each cell's statement, 0 if there is none; the metadata
+/// has the names by number. Smoothing groups keep the file's numbers.
 struct State {
   std::string_view keyword;
   std::string_view array;

@@ -89,7 +89,7 @@ struct CornerIndices {
   }
 };
 
-/// A list (v, vt or vn) and the highest position named before it was read.
+/// A list (v, vt or vn) and the highest position that a face named before the list had it.
 struct List {
   std::string_view name;
   Index count = 0;
@@ -152,7 +152,7 @@ bool take_corners(Scanner& in, Line& line) {
                      });
 }
 
-/// Parses the words of a line that is not `other`; else returns false.
+/// Parses a line of any kind but `other`; returns false for all other lines.
 bool parse_plain(Scanner& in, Line& line) {
   const std::string_view keyword = in.peek_word();
   in.move_on(keyword.size());
@@ -219,7 +219,8 @@ class Reader {
         kPartBytes);
     are_regular_ = count > 0;
     for (const Line& line : std::span(lines_).first(static_cast<std::size_t>(count))) {
-      if (line.byte < scanner_.byte() || add(line)) continue;  // the first: it is joined to a line before it
+      if (line.byte < scanner_.byte() || add(line))
+        continue;  // the first: a line before is joined to this line
       scanner_.move_to(scanner_.at(line.byte, line.number));
       read_statement();
     }
@@ -247,7 +248,7 @@ class Reader {
     return false;
   }
 
-  /// Adds a face unless a number points ahead.
+  /// Adds a face. Returns false if a corner names a list entry that comes later in the file.
   bool add_face(std::span<const Line::Corner> corners) {
     const std::array lists{vertices_.count, texture_.count, normals_.count};
     const std::array indices{&corners_, &corner_texture_, &corner_normals_};

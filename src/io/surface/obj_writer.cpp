@@ -319,7 +319,7 @@ class ObjWriter {
   std::vector<Index> weight_rows_;
   GatheredVector vertex_texture_;
   GatheredVector vertex_normals_;
-  std::vector<const std::int32_t*> texture_;  // of each cell's corners; null if there are none
+  std::vector<const std::int32_t*> texture_;  // indices of each cell's corners; null if there are none
   std::vector<const std::int32_t*> normals_;
   std::array<std::vector<std::int32_t>, kStates.size()> states_;
   std::array<std::string, kStates.size()> current_;  // the last names written before the cells

@@ -31,7 +31,7 @@ inline constexpr std::array<std::array<std::string_view, 2>, 8> kTypeWords{{{"do
 
 inline bool is_integer(Type type) { return type > Type::float32; }
 
-/// Returns `work` of a zero of the type.
+/// Returns `work(zero)`, where `zero` is a 0 of the type.
 template <class Work>
 auto with_type(Type type, const Work& work) {
   switch (type) {
@@ -68,7 +68,7 @@ struct Property {
   TypeWord count_type;  ///< of a list
   std::string why_left_out =
       {};                     ///< of vertices and cells: why the property is read but not kept; else empty
-  bool numbers_rows = false;  ///< of rows that go with the faces: the number of the face
+  bool numbers_rows = false;  ///< in rows that go with faces: whether it is the face's number
 };
 
 /// Meaning of an element: vertices, a kind of cells, strips of triangles, rows that go with the faces, or

@@ -192,8 +192,7 @@ void leave_header(Scanner& scanner) {
   }
 }
 
-/// Keeps the role rows_of_faces only if the element follows the only element of faces and has as many rows as
-/// that.
+/// Keeps the role rows_of_faces only if the element follows the only element of faces and has as many rows.
 void check_rows_of_faces(PlyMetadata& header) {
   const Element* faces = nullptr;
   Element* rows = nullptr;
@@ -268,7 +267,7 @@ void read_header(Scanner& scanner, PlyMetadata& header) {
 
 // ---- body
 
-/// Reads the numbers of the body; a scanner may be at another place of the text.
+/// Reads the numbers of the body by a given scanner of the text, not only by its own.
 struct BodyReader : NumberReader {
   using NumberReader::NumberReader;
 
@@ -605,7 +604,7 @@ class Reader {
     });
   }
 
-  /// Appends the later parts to the first.
+  /// Joins the arrays at the positions `parts` into the first of them.
   void join(const std::vector<std::size_t>& parts) {
     DataArray& whole = mesh_.data[parts[0]];
     for (std::size_t p = 1; p < parts.size(); ++p)

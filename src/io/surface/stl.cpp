@@ -216,8 +216,8 @@ Facet read_facet(Scanner& scanner) {
   return facet;
 }
 
-/// Reads the facets of a solid: on all threads those in the seven lines in which programs write them, the
-/// others one by one. After a facet of another form, `are_regular` is false: all are then read one by one.
+/// Reads the facets of a solid: on all threads while facets have the usual seven lines. A facet of another
+/// form sets `are_regular` to false; facets are then read one by one.
 void read_facets(Scanner& scanner, Builder& builder, bool& are_regular) {
   constexpr Index kLines = 7;  // of a facet
   constexpr std::size_t kMostAtOnce = std::size_t{1} << 15;

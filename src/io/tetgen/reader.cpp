@@ -23,7 +23,7 @@ namespace {
 
 constexpr char kComment = '#';
 
-/// The records of one file beside their points.
+/// The records of one file, without the points that they name.
 struct Records {
   Index count = 0;
   IdMap numbering;
@@ -51,7 +51,7 @@ void begin_record(Scanner& in, std::string_view what) {
   }
 }
 
-/// Fails at the end of the line, where a record has its next number.
+/// Fails if the line ends although the record needs another number.
 void expect_column(Scanner& in, std::string_view what) {
   if (in.at_line_end()) {
     in.fail(fmt::format("unexpected end of line; expected {}", what),

@@ -100,7 +100,6 @@ struct Column {
   std::vector<Index> row_of;  // empty: row i belongs to vertex or cell i
 };
 
-/// Returns a value as it is written.
 std::string text_of(const Column& column, Index item) {
   const Offset row = column.row_of.empty() ? item : column.row_of[item];
   if (row < 0) return "0";  // a cell without a label
@@ -150,7 +149,7 @@ std::vector<Column> attribute_columns(const Mesh& mesh, Association association,
   return columns;
 }
 
-/// Notes the mapping of arrays to attribute columns if it is not the default.
+/// Notes the arrays that become columns of attributes and lose their names.
 void note_lost_names(const std::vector<Column>& columns, std::string_view file, Notes& notes) {
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const DataArray& array = *columns[k].array;
@@ -177,7 +176,7 @@ bool has_markers(const Labels& labels, const std::vector<Index>& items, std::str
 
 constexpr std::int64_t kLargestNumber = std::numeric_limits<std::int64_t>::max();  // number of a vertex
 
-/// What a file holds of its items, the points or cells.
+/// The contents of a file: its points or cells, and the columns that are written for each.
 struct FileContent {
   std::vector<Index> items;
   int nodes = 0;  ///< of each cell

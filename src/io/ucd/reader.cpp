@@ -105,7 +105,7 @@ class Reader {
     std::array<Index, 8> cell{};  ///< its vertices
   };
 
-  /// Reads the line of a cell after its number, which errors name. `likely` is tried first as its type.
+  /// Reads the line of the cell `id` after its number. Tries `likely` first as the type of the cell.
   CellLine read_cell(Scanner& in, Index id, const CellKind* likely) const {
     CellLine line{.material = in.integer<std::int64_t>("the material of a cell"), .kind = likely};
     const std::string_view name = in.word("the type of a cell");
@@ -138,8 +138,8 @@ class Reader {
     return find_kind(ahead.peek_word());
   }
 
-  /// Reads cells on all threads, up to the first one that is not numbered on, has more nodes than the first
-  /// cell or is irregular.
+  /// Reads cells on all threads, up to the first cell that does not have the next number, has more nodes than
+  /// the first cell or is irregular.
   void read_regular_cells(Index count, std::vector<std::int64_t>& materials) {
     const CellKind* const first = next_kind();
     if (first == nullptr) return;

@@ -10,7 +10,7 @@ namespace meshorder::unv {
 namespace {
 
 /// A range of types whose cells have the same dimension; the number of nodes then gives the shape. The type
-/// alone does not: documents and programs disagree on linear and parabolic membranes (71 to 75).
+/// does not give the shape: documents and programs disagree on linear and parabolic membranes (71 to 75).
 struct Family {
   int first;
   int last;

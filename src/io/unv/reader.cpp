@@ -122,7 +122,6 @@ class UnvReader {
     return in_.all().substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(in_.byte() - begin));
   }
 
-  /// Keeps a dataset as it is.
   void keep_dataset() {
     in_.seek(begin_);
     (void)in_.raw_line();
@@ -169,7 +168,6 @@ class UnvReader {
     return false;
   }
 
-  /// Takes the next number of the line.
   std::int64_t next_integer(std::string_view what) {
     expect_more(what);
     return in_.integer<std::int64_t>(what);
@@ -184,7 +182,7 @@ class UnvReader {
   }
 
   [[nodiscard]] Index checked_number(std::int64_t number, std::string_view what) const {
-    if (number < 0 || number > kMaxIndex) {  // libMesh counted from 0
+    if (number < 0 || number > kMaxIndex) {  // libMesh wrote numbers from 0
       in_.fail(fmt::format("{} is {}", what, number), "0 to 2147483647 are possible");
     }
     return static_cast<Index>(number);

@@ -75,7 +75,6 @@ class FieldTable {
     ++size_;
   }
   [[nodiscard]] const Fields& operator[](Index item) const { return different_[of_.empty() ? 0 : of_[item]]; }
-  /// Returns the combinations.
   [[nodiscard]] const std::vector<Fields>& different() const { return different_; }
 
  private:
@@ -95,11 +94,11 @@ struct OtherElement {
 
 /// A permanent group.
 struct Group {
-  std::vector<std::int64_t> fields;                 ///< the first line without the number of members
-  std::string name;                                 ///< as in the file
-  std::string set;                                  ///< name of its sets in the mesh
-  bool has_nodes = false;                           ///< whether it has a set of vertices, as empty groups do
-  bool has_elements = false;                        ///< whether it has a set of cells
+  std::vector<std::int64_t> fields;  ///< the first line without the number of members
+  std::string name;                  ///< as in the file
+  std::string set;                   ///< name of its sets in the mesh
+  bool has_nodes = false;            ///< whether it has a set of vertices; true for empty groups
+  bool has_elements = false;         ///< whether it has a set of cells
   std::vector<std::array<std::int64_t, 4>> others;  ///< members of other kinds: code, number, two more
 };
 
@@ -121,7 +120,7 @@ struct Dataset {
   DatasetKind part = DatasetKind::text;
   int dataset = 0;
   std::string text = {};  ///< all lines, if kept as they are; for results, the lines before the values
-  Index first = 0;        ///< first node, element, group or result of the file in it
+  Index first = 0;        ///< position in the file of its first node, element, group or result
   Index count = 0;
   std::vector<OtherElement> others = {};  ///< elements that are not cells
 };

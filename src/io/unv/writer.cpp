@@ -24,7 +24,7 @@ constexpr std::size_t kLongestGroup = 40;
 constexpr std::size_t kLongestLine = 80;
 constexpr std::string_view kDelimiter = "-1";         // of datasets
 constexpr int kWidth = 10;                            // of whole numbers
-constexpr std::int64_t kLargestNumber = 999'999'999;  // more digits fill the width
+constexpr std::int64_t kLargestNumber = 999'999'999;  // a longer number fills its columns
 constexpr int kDigitsOfCoordinates = 16;
 
 class Lines {
@@ -41,9 +41,9 @@ class Lines {
     line_.append(digits.data(), digits.size());
   }
 
-  /// Adds a number with that many digits after the point, right-aligned in `digits` + 8 columns (+ 9 for 16
-  /// digits), or in more columns if it is longer. Returns whether it reads back as the same number; `exact`:
-  /// if not, adds 16 digits, which are always enough.
+  /// Adds a number with `digits` digits after the point, right-aligned in `digits` + 8 columns (+ 9 for 16
+  /// digits), or in more columns if it is longer. Returns whether this text reads back as the same number. If
+  /// it does not and `exact` is true, adds the number with 16 digits instead, which are always enough.
   bool real(double value, int digits, char exponent = 'E', bool exact = false) {
     const auto width = static_cast<std::size_t>(digits < kDigitsOfCoordinates ? digits + 8 : digits + 9);
     char* end = rounded(value, digits);
@@ -283,7 +283,7 @@ class UnvWriter {
   /// Takes and returns a free name that groups can have. A line that is the delimiter of datasets would end
   /// the groups.
   static std::string name_for(const std::string& given, DistinctNames& taken) {
-    const std::string name = plain_name(trimmed(given), " ");  // Gmsh reads the first word
+    const std::string name = plain_name(trimmed(given), " ");  // Gmsh reads only the first word of a name
     if (name.empty()) return taken.take("group");
     return taken.take(name == kDelimiter ? "_" + name : name);
   }
@@ -446,7 +446,7 @@ class UnvWriter {
 
   const Mesh& mesh_;
   const UnvMetadata* own_;  // null if the mesh comes from elsewhere
-  UnvMetadata plain_;       // the file in this case
+  UnvMetadata plain_;       // the file in that case
   const Contents& file_;
   Notes& notes_;
   DeckNumbers numbers_;
@@ -455,8 +455,8 @@ class UnvWriter {
   NamedParts parts_;
   OutputFile out_;
   Lines lines_;
-  std::vector<Index> file_node_ = numbers_.nodes.items();        // of each vertex, if there is a file
-  std::vector<Index> file_element_ = numbers_.elements.items();  // of each cell, likewise
+  std::vector<Index> file_node_ = numbers_.nodes.items();        // node of the file at each vertex
+  std::vector<Index> file_element_ = numbers_.elements.items();  // element of the file at each cell
   std::set<const EntitySet*> written_;
   std::set<const DataArray*> written_arrays_;
 };

@@ -54,7 +54,7 @@ class Lines {
   }
   void take() { (void)at().raw_line(); }
 
-  /// The scanner whose position errors report.
+  /// Returns the scanner of the present file; errors report its position.
   [[nodiscard]] Scanner& at() { return *files_.back().scanner; }
 
   /// Returns the comments since the last call, whole lines.
@@ -291,8 +291,8 @@ class Reader {
     return !has_columns && !has_any_of(lines_.at().all(), "\f\v");
   }
 
-  /// Reads vertices on all threads, up to the first one that is not numbered on or has more than numbers.
-  /// Returns how many it read.
+  /// Reads vertices on all threads, up to the first one that does not have the next number or holds anything
+  /// but numbers. Returns how many it read.
   Index read_plain_vertices(const Header& header) {
     if (!is_plain(header)) return 0;
     mesh_.points.resize(reservable(header.count, 3));

@@ -34,7 +34,7 @@ bool vega_holds(const Mesh& /*mesh*/, Shape shape, int vertices) {
 constexpr std::int64_t kLargestNumber =
     std::numeric_limits<std::int64_t>::max();  // number of a vertex or cell
 
-/// Writes one mesh; the sections of a Vega file in their order, sections of other meshes in the usual order.
+/// Writes one mesh. A mesh from a Vega file keeps its order of sections; other meshes get the usual order.
 class VegaWriter {
  public:
   VegaWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
