@@ -64,7 +64,7 @@ bool is_written_to(const FilePath& path, std::chrono::file_clock::time_point sin
   return path.store() == nullptr && !code && last > since - std::chrono::seconds(1);
 }
 
-/// Reads a mesh. Tries again while another process replaces the mesh's files and these do not fit together.
+/// Reads a mesh. Tries again if its files do not fit together and another process has just written there.
 Mesh read_together(const FilePath& path, const Format& format, Notes& notes) {
   constexpr int kAttempts = 20;
   constexpr std::chrono::milliseconds kPause{50};

@@ -33,8 +33,7 @@ struct TypeCount {
 /// The types of some cells, in the order in which they first appear.
 struct TypeCounts {
   std::vector<TypeCount> types;
-  std::size_t last =
-      0;  ///< index in `types` of the last cell's type: neighbouring cells mostly have the same type
+  std::size_t last = 0;  ///< index in `types` of the last type added, which neighbours mostly have, too
 
   void add(Shape shape, int vertices, Index count) {
     if (types.empty() || !types[last].is(shape, vertices)) {

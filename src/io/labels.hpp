@@ -27,8 +27,7 @@ const DataArray* label_array(const Mesh& mesh, Association association, std::str
 /// Notes that all arrays but the labels of cells are not written, for formats that hold no other arrays.
 void note_arrays_beside_cell_labels(const Mesh& mesh, std::string_view format, Notes& notes);
 
-/// Notes that SU2's markers whose names are numbers are written as `what`. In the mesh these markers are
-/// labels.
+/// Notes that SU2's markers with numbers as names, which are labels in the mesh, are written as `what`.
 void note_number_markers(const Mesh& mesh, std::string_view what, Notes& notes);
 
 /// Converts labels to the values of an array: 32-bit integers if all fit.

@@ -53,8 +53,8 @@ std::span<const int> vtk_order(Shape shape, int nodes);
 // ---- names of the arrays that keep data of Gmsh's files
 
 inline constexpr std::string_view kCellEntity = "gmsh:geometrical";    ///< tag of each cell's entity
-inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< of the entity, if not the cell's
-inline constexpr std::string_view kCellType = "gmsh:type";  ///< if shape and number of nodes do not give it
+inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< dimension of each cell's entity
+inline constexpr std::string_view kCellType = "gmsh:type";  ///< Gmsh's type if shape and nodes leave a choice
 inline constexpr std::string_view kCellPartitions = "gmsh:partitions";  ///< 2.2: tags from the third on
 inline constexpr std::string_view kCellTagCount = "gmsh:tag_count";     ///< 2.2: if it differs among cells
 inline constexpr std::string_view kCellGhosts = "gmsh:ghosts";    ///< owner, number of ghosts, ghosts, zeros

@@ -332,7 +332,7 @@ std::string shortest(double value) {
 RealText real_text(double value) {
   std::string text = shortest(value);
   double rounded = value;
-  // with a precision of 16, the text has all digits of the value
+  // one more digit would reproduce the value itself, whose text is too long
   for (int digits = 15; digits > 0 && text.size() > kLargeWidth; --digits) {
     std::array<char, 40> buffer{};
     char* const begin = buffer.data();

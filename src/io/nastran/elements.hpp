@@ -14,7 +14,7 @@ namespace meshorder::nastran {
 /// Fields besides the nodes in which an element may name a node or a point.
 enum class Extra : std::uint8_t {
   none,
-  orientation,  ///< field 5 is a node if fields 6 and 7 are blank; else the three are a direction
+  orientation,  ///< field 5 is a node if it is an integer and fields 6 and 7 are blank; else a direction
   warping       ///< as `orientation`; fields 17 and 18 are points
 };
 

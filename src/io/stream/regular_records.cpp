@@ -24,9 +24,9 @@ struct TextPart {
   std::int64_t record_lines = 0;
   bool has_other_ends = false;  ///< has lines that end in CR alone; `lines` does not count them
 
-  // set after all parts are counted
+  // set after the lines of all parts are counted
   std::int64_t first_line = 0;
-  std::int64_t record_lines_before = 0;  ///< lines of all records before this part
+  std::int64_t record_lines_before = 0;  ///< number of lines of records before this part
   bool is_regular = false;
 };
 

@@ -219,8 +219,7 @@ class Reader {
         kPartBytes);
     are_regular_ = count > 0;
     for (const Line& line : std::span(lines_).first(static_cast<std::size_t>(count))) {
-      if (line.byte < scanner_.byte() || add(line))
-        continue;  // the first: a line before is joined to this line
+      if (line.byte < scanner_.byte() || add(line)) continue;  // the first: part of a joined line
       scanner_.move_to(scanner_.at(line.byte, line.number));
       read_statement();
     }

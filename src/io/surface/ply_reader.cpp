@@ -267,7 +267,7 @@ void read_header(Scanner& scanner, PlyMetadata& header) {
 
 // ---- body
 
-/// Reads the numbers of the body by a given scanner of the text, not only by its own.
+/// Reads the numbers of the body from a scanner of its text: its own or another.
 struct BodyReader : NumberReader {
   using NumberReader::NumberReader;
 

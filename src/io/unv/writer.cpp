@@ -446,7 +446,7 @@ class UnvWriter {
 
   const Mesh& mesh_;
   const UnvMetadata* own_;  // null if the mesh comes from elsewhere
-  UnvMetadata plain_;       // the file in that case
+  UnvMetadata plain_;       // contents for such a mesh
   const Contents& file_;
   Notes& notes_;
   DeckNumbers numbers_;
