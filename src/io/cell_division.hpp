@@ -10,13 +10,13 @@
 
 namespace meshorder {
 
-/// Cells of one type, one after another.
+/// A block: cells of one type and one label, which follow one another in a file.
 struct CellPart {
-  Index first = 0;
-  Index count = 0;
+  Index first = 0;  ///< first cell
+  Index count = 0;  ///< number of cells
   Shape shape = Shape::vertex;
   int nodes = 0;
-  std::int64_t label = 0;
+  std::int64_t label = 0;  ///< label, or number of a set; 0 if there is neither
 };
 
 /// Maximum number of blocks. If labels or sets would give more blocks, cells are divided by type alone.

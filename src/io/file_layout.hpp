@@ -40,8 +40,8 @@ struct FileSizes {
   std::int64_t cells = 0;
   std::int64_t entries = 0;  ///< length of the connectivity
   // only for a file without types and offsets of cells
-  Shape shape = Shape::vertex;  ///< of all cells
-  std::int64_t nodes = 0;       ///< of each cell
+  Shape shape = Shape::vertex;  ///< shape of all cells
+  std::int64_t nodes = 0;       ///< number of vertices of each cell
 };
 
 /// A file as a list of parts, for code that reads and writes their bytes directly.

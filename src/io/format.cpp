@@ -169,8 +169,8 @@ bool is_bulk_data(std::string_view bytes) {
   return false;
 }
 
-/// Returns the name of the format whose files begin like this, or an empty text. Skips comments and empty
-/// lines before the first word.
+/// Returns the name of the format whose files begin like `bytes`; an empty text if none does. Skips comments
+/// and empty lines before the first word.
 std::string_view format_that_begins(std::string_view bytes) {
   if (is_cgns(bytes)) return "CGNS";
   if (is_exodus(bytes)) return "Exodus";

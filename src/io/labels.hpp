@@ -12,7 +12,7 @@ namespace meshorder {
 /// The labels (kLabel) of all vertices or all cells.
 struct Labels {
   std::vector<std::int64_t> values;  ///< 0 if not given; empty if the mesh has no labels
-  std::vector<bool> given;
+  std::vector<bool> given;           ///< whether the mesh gives each item a label
 
   [[nodiscard]] bool any() const noexcept { return !values.empty(); }
 };

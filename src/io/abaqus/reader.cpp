@@ -609,8 +609,8 @@ class DeckReader {
   std::shared_ptr<Deck> deck_ = std::make_shared<Deck>();
   std::vector<Place> places_of_sections_;
   std::vector<LaterNode<Place>> later_nodes_;
-  std::vector<NodeLine> node_lines_;                 // buffer for regular lines
-  std::vector<ElementLine> element_lines_;           // likewise
+  std::vector<NodeLine> node_lines_;                 // buffer for regular lines of nodes
+  std::vector<ElementLine> element_lines_;           // buffer for regular lines of elements
   std::vector<Index> element_nodes_;                 // vertices of these elements, in the order of cells
   std::vector<std::string> files_;                   // names of the files in the order of reading; may repeat
   std::unordered_set<std::int64_t> other_elements_;  // numbers of elements that are not cells

@@ -17,7 +17,7 @@ namespace meshorder {
 
 /// The contents that all decks have, in the order of the deck.
 struct DeckContents {
-  IdMap nodes;                  ///< their numbers
+  IdMap nodes;                  ///< numbers of the nodes
   IdMap elements;               ///< numbers of the elements that are cells
   std::vector<EntitySet> sets;  ///< members are positions in the file
   std::string line_end = "\n";
@@ -77,7 +77,7 @@ inline void require_mesh(const DeckContents& deck, const std::string& file, cons
                    remedy_of_others);
 }
 
-/// Gives a mesh, whose vertices and cells are in the order of the deck, the ids and metadata of the deck.
+/// Gives a mesh the ids and metadata of a deck. Vertices and cells must be in the deck's order.
 template <class Deck>
 void keep_deck(Mesh& mesh, std::shared_ptr<Deck> deck) {
   mesh.vertex_ids = deck->nodes.ids_unless_from(1);
@@ -109,9 +109,9 @@ const DeckMetadata<Deck>* own_deck(const Mesh& mesh, Fits fits) {
 /// @tparam Place  type of the element's place in the deck, for a message
 template <class Place>
 struct LaterNode {
-  Offset entry;  ///< position in Cells::vertices
-  std::int64_t number;
-  Place place;
+  Offset entry;         ///< position in Cells::vertices
+  std::int64_t number;  ///< of the node
+  Place place;          ///< of the element
 };
 
 /// Sets the entries that wait for `nodes`. Calls `fail(later)`, which throws, if there is no such node.

@@ -73,7 +73,7 @@ struct View {
   std::optional<std::string> array;    ///< name of the array in the mesh; nullopt: the view has no values
   Index width = 1;                     ///< components of that array
   std::vector<std::string> strings;    ///< verbatim, quotes included
-  std::vector<double> reals;           ///< the time first
+  std::vector<double> reals;           ///< the first is the time
   std::vector<std::int32_t> integers;  ///< step, components, entries (set anew when written), partition …
   PerElement per = PerElement::one;
   int nodes = 1;  ///< nodes per cell, for PerElement::fixed

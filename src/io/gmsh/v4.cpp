@@ -264,7 +264,7 @@ void read_nodes_4(ReadContext& reading) {
 void read_elements_4(ReadContext& reading) {
   NumberReader& source = reading.source;
   Mesh& mesh = reading.mesh;
-  const std::int64_t bytes = reading.metadata.has_wide_numbers() ? 8 : 4;  // of a number
+  const std::int64_t bytes = reading.metadata.has_wide_numbers() ? 8 : 4;  // size of a number
   const auto [blocks, all] = read_head(reading, "elements", 4, 2 * bytes);
   std::vector<std::int64_t> ids;
   std::vector<std::int32_t> tags;

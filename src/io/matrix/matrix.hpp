@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// Shared by the formats of matrices and graphs. A square matrix is a mesh whose vertices are its rows, all
-// at the origin, and whose cells are its entries in the order of the file: a line from row to column, a
-// vertex on the diagonal. Values are the array "value" on cells. An edge of a graph is a line.
+// Declarations shared by the formats of matrices and graphs. A square matrix is stored as a mesh: its rows
+// are vertices, all at the origin; its entries are cells in the order of the file: lines from row to column,
+// and vertices on the diagonal. Values are the array "value" on cells. An edge of a graph is a line.
 
 #include "io/format.hpp"
 

@@ -106,8 +106,8 @@ class Splitter {
     }
   }
 
-  /// Compares the name of a line with the name at the end of the line before. Of the latter, Nastran does not
-  /// read the first column, whether that is a mark or a letter.
+  /// Compares the name of a line with the name at the end of the line before. Nastran ignores the first
+  /// column of that earlier name, whether the column holds a mark or a letter.
   void check_name(std::string_view name) {
     const std::string_view own = line_name(name);
     if (own.empty() || line_name(next_name_).empty() || own == line_name(next_name_)) return;

@@ -25,7 +25,7 @@ constexpr std::int64_t kLargestNumber = 99'999'999;
 struct ElementCard {
   Piece place;
   const ElementType* type = nullptr;
-  int nodes = 0;  ///< of the cell: all nodes of the card, or the corners if the card lacks some of the others
+  int nodes = 0;  ///< vertices of the cell: all nodes of the card, or the corners if other nodes are missing
 };
 
 /// A file, and where its nodes and elements are in it.

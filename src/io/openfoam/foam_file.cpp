@@ -131,7 +131,7 @@ void FoamFile::read_header() {
     position_ = 0;
     fail("is not an OpenFOAM file", "these begin with the header FoamFile { … }");
   }
-  int depth = 1;  // of braces
+  int depth = 1;  // depth of nested braces
   while (depth > 0) {
     const std::string_view key = token();
     if (key.empty()) fail("the file ends within its header", "it may be cut short");

@@ -90,7 +90,7 @@ class FoamFile {
   T binary(std::string_view what);
   std::int64_t label(std::string_view what);
   double scalar(std::string_view what);
-  /// Takes the size of a list whose entries take at least that many bytes each.
+  /// Takes the size of a list whose entries take at least `bytes_each` bytes each.
   std::int64_t size(std::string_view what, std::int64_t bytes_each);
   /// Returns the label that was read last; throws InputError if it is out of range.
   Index checked(std::int64_t label, std::string_view what, std::int64_t least, std::int64_t end);
@@ -100,10 +100,10 @@ class FoamFile {
   std::string text_;
   std::size_t position_ = 0;
   std::string class_;
-  std::size_t class_end_ = 0;  // its place in the file
+  std::size_t class_end_ = 0;  // position after the value of `class`
   std::string note_;
   bool binary_ = false;
-  std::endian order_ = std::endian::little;  // of binary numbers
+  std::endian order_ = std::endian::little;  // byte order of binary numbers
   int label_bytes_ = 4;
   int scalar_bytes_ = 8;
 };

@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 
 /// The cells on both sides of the faces.
 struct Sides {
-  std::vector<Index> owner;      ///< of every face
-  std::vector<Index> neighbour;  ///< of internal faces, which come first
+  std::vector<Index> owner;      ///< owner of every face
+  std::vector<Index> neighbour;  ///< neighbour of each internal face; these come first
   Index cells = 0;
 };
 

@@ -47,7 +47,7 @@ struct NumberReader {
 
   Scanner scanner;
   bool binary = false;
-  std::endian order = std::endian::native;  ///< of binary numbers
+  std::endian order = std::endian::native;  ///< byte order of binary numbers
 };
 
 }  // namespace meshorder

@@ -34,7 +34,7 @@ struct OutputFile::Stream {
   OutputPlace place;
   std::optional<Scratch> scratch;  ///< empty if the text is the whole file
   Descriptor file;
-  std::size_t since_sync = 0;  ///< bytes
+  std::size_t since_sync = 0;  ///< bytes written since the last `begin_sync`
 
   [[nodiscard]] int put(std::string_view bytes) {
     const int error = file.write(bytes);

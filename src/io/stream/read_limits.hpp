@@ -47,8 +47,8 @@ class ReadScope {
   const FilePath& file_;
   std::optional<std::uint64_t> memory_;
   std::vector<std::filesystem::path> include_folders_;
-  std::set<std::string> counted_;  ///< paths of files
-  std::uint64_t stored_ = 0;       ///< bytes of files
+  std::set<std::string> counted_;  ///< paths of the files read so far
+  std::uint64_t stored_ = 0;       ///< total size of these files in bytes
   std::uint64_t claimed_ = 0;
   ReadScope* outer_;
 };

@@ -33,10 +33,10 @@ struct TextPart {
 /// What the records of a text are, and how to read one.
 struct Records {
   const std::function<bool(Scanner&, Index)>& read;
-  Index lines = 1;            ///< of each record
+  Index lines = 1;            ///< number of lines of each record
   bool may_be_blank = false;  ///< all lines belong to records, not only those with words
 
-  /// Returns how many records begin in so many lines.
+  /// Returns how many records begin in `record_lines` lines.
   [[nodiscard]] std::int64_t begin_in(std::int64_t record_lines) const {
     return (record_lines + lines - 1) / lines;
   }

@@ -16,7 +16,7 @@ namespace meshorder {
 
 /// How much of a text was read as numbers.
 struct RegularNumbers {
-  std::size_t count = 0;     ///< numbers read
+  std::size_t count = 0;     ///< how many numbers were read
   std::size_t bytes = 0;     ///< bytes up to the end of the last number or of the blanks after it
   std::int64_t lines = 0;    ///< line feeds in these bytes
   bool has_returns = false;  ///< these bytes may contain carriage returns, which also end lines
@@ -94,7 +94,7 @@ Index read_regular_records(Scanner& in, Index count, const std::function<bool(Sc
 Index read_regular_lines(Scanner& in, Index count, const std::function<bool(Scanner&, Index)>& read,
                          std::size_t part_bytes = std::size_t{1} << 20);
 
-/// Reads all records of a text, those that are not regular one by one.
+/// Reads all records of a text: regular records on all threads, all other records one by one.
 ///
 /// @param read  `read(scanner, record)` takes the words of a record. It throws an InputError if the record is
 ///              faulty, and writes only data of the record: it may be called again for the same record

@@ -62,7 +62,7 @@ struct Su2Metadata final : FormatMetadata {
     std::vector<SurfacePoint> surface_points = {};
   };
   std::vector<FileSection> sections;    ///< in the order of the file
-  std::vector<std::string> keywords;    ///< of the lines that are kept as they are
+  std::vector<std::string> keywords;    ///< keywords of the lines that are kept as they are
   bool counts_physical_points = false;  ///< NPOIN= gives a second number
   bool numbers_elements = false;  ///< lines of elements end with their number, from 0; the next two say the
                                   ///< same for points and for elements of markers

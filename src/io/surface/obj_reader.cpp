@@ -103,12 +103,12 @@ struct Line {
   enum class Kind : std::uint8_t { vertex, texture, normal, face, other };
   using Corner = std::array<Index, 3>;  ///< v, vt and vn, counted from 1; 0 if it has none
 
-  std::int64_t byte = 0;    ///< of its first word
-  std::int64_t number = 0;  ///< of the line
+  std::int64_t byte = 0;    ///< position of the line's first word
+  std::int64_t number = 0;  ///< number of the line in the file
   Kind kind = Kind::other;
-  std::size_t count = 0;          ///< of numbers or corners
-  std::string_view text;          ///< of a texture coordinate or normal
-  std::array<double, 6> reals{};  ///< of a vertex
+  std::size_t count = 0;          ///< how many numbers or corners the line has
+  std::string_view text;          ///< numbers of a texture coordinate or normal
+  std::array<double, 6> reals{};  ///< numbers of a vertex
   std::array<Corner, 4> corners{};
 };
 
@@ -543,7 +543,7 @@ class Reader {
 
   Scanner scanner_;
   bool are_regular_;         // the next lines may be parsed on all threads
-  std::vector<Line> lines_;  // parsed ahead
+  std::vector<Line> lines_;  // lines that were parsed ahead
   Mesh mesh_;
   std::shared_ptr<ObjMetadata> metadata_ = std::make_shared<ObjMetadata>();
   List vertices_{"v"};

@@ -65,7 +65,7 @@ struct Property {
   std::string name;
   TypeWord type;
   bool is_list = false;
-  TypeWord count_type;  ///< of a list
+  TypeWord count_type;  ///< type of the length of a list
   std::string why_left_out =
       {};                     ///< of vertices and cells: why the property is read but not kept; else empty
   bool numbers_rows = false;  ///< in rows that go with faces: whether it is the face's number

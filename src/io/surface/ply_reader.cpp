@@ -405,8 +405,8 @@ class Reader {
     }
   }
 
-  /// Reads, on all threads, rows of a text that are each on a line of its own and hold plain numbers, with no
-  /// list except that of at most four vertices. Returns how many it read.
+  /// Reads rows of a text on all threads, up to the first row that is not a line of plain numbers or has more
+  /// than four vertices. Reads nothing of an element with other lists. Returns how many it read.
   Index read_plain_rows(const Element& element, std::vector<Column>& columns) {
     const bool has_few_lists =
         element.role != Role::strips && element.role != Role::rows_of_faces &&

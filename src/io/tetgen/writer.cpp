@@ -179,7 +179,7 @@ constexpr std::int64_t kLargestNumber = std::numeric_limits<std::int64_t>::max()
 /// The contents of a file: its points or cells, and the columns that are written for each.
 struct FileContent {
   std::vector<Index> items;
-  int nodes = 0;  ///< of each cell
+  int nodes = 0;  ///< number of nodes of each cell
   std::vector<Column> attributes;
   bool marked = false;
 };

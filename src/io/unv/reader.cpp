@@ -529,7 +529,7 @@ class UnvReader {
   Notes& notes_;
   Mesh mesh_;
   std::shared_ptr<Contents> file_ = std::make_shared<Contents>();
-  int dataset_ = 0;  // being read
+  int dataset_ = 0;  // number of the dataset that is being read
   bool is_binary_ = false;
   std::string binary_fields_;
   std::int64_t begin_ = 0;                            // first byte of the dataset

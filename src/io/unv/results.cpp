@@ -25,7 +25,7 @@ std::vector<std::int64_t> integers_of(std::string_view line) {
   return numbers;
 }
 
-/// Takes that many lines; fewer at the end of the file.
+/// Takes `count` lines; fewer at the end of the file.
 std::vector<std::string_view> take_lines(Scanner& in, std::size_t count) {
   std::vector<std::string_view> lines;
   while (lines.size() < count && in.bytes_left() > 0) lines.push_back(in.raw_line());

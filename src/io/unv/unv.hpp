@@ -30,7 +30,7 @@ inline constexpr int kGroups = 2477;
 inline constexpr int kResults = 2414;
 inline constexpr int kResultsAtNodes = 55;
 inline constexpr int kResultsAtElements = 56;
-inline constexpr int kHeader = 151;    ///< of the file
+inline constexpr int kHeader = 151;    ///< header of the file
 inline constexpr int kSystems = 2420;  ///< systems of coordinates
 
 // Codes of the kinds of members of groups.

@@ -22,8 +22,8 @@ namespace {
 constexpr std::string_view kName = "I-deas";
 constexpr std::size_t kLongestGroup = 40;
 constexpr std::size_t kLongestLine = 80;
-constexpr std::string_view kDelimiter = "-1";         // of datasets
-constexpr int kWidth = 10;                            // of whole numbers
+constexpr std::string_view kDelimiter = "-1";         // the line before and after a dataset
+constexpr int kWidth = 10;                            // columns of a whole number
 constexpr std::int64_t kLargestNumber = 999'999'999;  // a longer number fills its columns
 constexpr int kDigitsOfCoordinates = 16;
 

@@ -23,7 +23,7 @@ struct VegaSection {
   Kind kind = Kind::other;
   std::string comments;            ///< whole lines
   std::string title;               ///< name of a material; keyword's line of an unknown section
-  std::vector<std::string> lines;  ///< of materials and unknown sections
+  std::vector<std::string> lines;  ///< lines of a material or an unknown section
   std::size_t set = 0;             ///< index of the set in Mesh::sets
   std::string region_set;
   std::string region_material;
