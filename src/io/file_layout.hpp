@@ -21,8 +21,8 @@ struct FilePart {
   Association association = Association::vertices;  ///< whether a row belongs to a vertex or to a cell
   std::uint8_t type = 0;                            ///< number type: index of an alternative of Values
   Index components = 1;                             ///< numbers of a row
-  std::int64_t rows = 0;                            ///< for the connectivity: number of vertices in it
-  std::size_t number = 0;                           ///< index of its name in FileLayout::names
+  std::int64_t rows = 0;   ///< number of rows; of the connectivity, number of vertices
+  std::size_t number = 0;  ///< index of its name in FileLayout::names
   std::int64_t at = 0;  ///< byte offset of the size words before the values; if there are none, of the values
   std::int64_t stored = 0;  ///< bytes in the file, including the size words
   std::int64_t blocks = 0;  ///< number of compressed blocks; 0: not compressed

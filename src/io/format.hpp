@@ -120,7 +120,7 @@ std::optional<Permutation> write_mesh_to(const Mesh& mesh, const FilePath& path,
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph> graph,
                   const std::function<void(const CsrGraph&, const Permutation&)>& ordered);
 
-// The extension .inp belongs to two formats: Abaqus decks and AVS UCD. Files of some formats have numbers.
+// The extension .inp belongs to two formats: Abaqus decks and AVS UCD.
 
 /// As `format_of`, for a file to be read: .inp is AVS UCD if the file's first bytes look like it, else
 /// Abaqus. Throws InputError for an .inp file that cannot be read.

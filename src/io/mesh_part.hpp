@@ -36,7 +36,7 @@ struct MeshPart {
   /// Where the members of a set of `mesh` are in the file's list.
   struct SetRows {
     Index size = 0;              ///< length of the file's list, for the whole mesh
-    std::vector<Index> entries;  ///< position in that list of each member, ascending
+    std::vector<Index> entries;  ///< for each member, its position in that list; ascending
   };
   /// A list of the file that may name a member twice.
   struct List {
@@ -56,8 +56,8 @@ struct MeshPart {
   /// Cells name vertices by their positions in the whole mesh. Rows of arrays and members of sets count from
   /// the first vertex or cell of the range. Ids are given even if they are 1, 2, …
   Mesh mesh;
-  std::vector<ArrayRows> arrays;  ///< for each array of the mesh
-  std::vector<SetRows> sets;      ///< for each set of the mesh
+  std::vector<ArrayRows> arrays;  ///< indexed like the arrays of `mesh`
+  std::vector<SetRows> sets;      ///< indexed like the sets of `mesh`
   std::vector<List> lists;
   std::string vertex_ids;  ///< name of the vertex ids in the file; empty if the file has none
   std::string cell_ids;

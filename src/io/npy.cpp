@@ -15,7 +15,7 @@ namespace meshorder {
 namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY\x01";  // with the major version 1
-constexpr std::size_t kAlignment = 64;                // of the header, magic included
+constexpr std::size_t kAlignment = 64;                // alignment of the header, magic included, in bytes
 constexpr std::size_t kPreamble = 10;                 // magic, versions and the header's length
 
 template <class T>

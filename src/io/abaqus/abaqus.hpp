@@ -27,7 +27,7 @@ struct DeckCard {
   std::string text = {};
   Index first = 0;  ///< position in the file of the card's first node or element
   Index count = 0;
-  ElementKind kind = {};  ///< of the card's elements
+  ElementKind kind = {};  ///< kind of the card's elements
 };
 
 struct Deck : DeckContents {

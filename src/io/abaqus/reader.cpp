@@ -283,7 +283,7 @@ class DeckReader {
     end_data(std::move(comments));
   }
 
-  /// Adds the number of a node or element; fails at `line` of the present file if it is taken.
+  /// Adds the number of a node or element; fails at `line` of the present file if the number is taken.
   void add_number(IdMap& numbers, Index number, std::int64_t line, std::string_view what) {
     if (!numbers.add(number)) {
       lines_.fail(line, fmt::format("{} {} is given twice", what, number), "numbers must differ");

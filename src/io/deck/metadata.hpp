@@ -110,8 +110,8 @@ const DeckMetadata<Deck>* own_deck(const Mesh& mesh, Fits fits) {
 template <class Place>
 struct LaterNode {
   Offset entry;         ///< position in Cells::vertices
-  std::int64_t number;  ///< of the node
-  Place place;          ///< of the element
+  std::int64_t number;  ///< number of the node
+  Place place;          ///< place of the element in the deck
 };
 
 /// Sets the entries that wait for `nodes`. Calls `fail(later)`, which throws, if there is no such node.

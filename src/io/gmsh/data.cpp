@@ -80,7 +80,7 @@ int nodes_of_entry(const Mesh& mesh, Index c, PerElement per, int fixed) {
 /// The entries of a section in the order of the file; entry i has nodes[i] × components values.
 struct Entries {
   std::vector<Index> rows;  ///< vertex or cell of each entry
-  std::vector<int> nodes;   ///< empty: each entry has one node
+  std::vector<int> nodes;   ///< number of nodes of each entry; empty if each has one
   std::vector<double> values;
 };
 

@@ -130,7 +130,7 @@ struct GmshMetadata : FormatMetadata {
                        [kind](const MshSection& section) { return section.kind == kind; });
   }
   [[nodiscard]] bool is_version_1() const { return version < 2; }
-  /// Returns whether elements have tags of their own: versions 1 and 2.
+  /// Returns whether the version is 1 or 2: each element then has tags of its own.
   [[nodiscard]] bool is_version_2() const { return version < 3; }
   [[nodiscard]] bool is_version_40() const { return version >= 4 && version < 4.05; }
   /// Returns whether numbers of nodes and elements have 64 bits; in binary files of 4.0 they have 32.
@@ -166,7 +166,7 @@ void expect_end(ReadContext& reading, std::string_view section);
 inline std::int64_t read_number(ReadContext& reading, std::string_view what) {
   return reading.metadata.has_wide_numbers() ? reading.source.int64(what) : reading.source.int32(what);
 }
-/// Reads a count as `read_number`; fails if the file is too short for items of at least that many bytes each.
+/// Reads a count as `read_number`. `text_bytes` and `binary_bytes`: least bytes of an item (Scanner::count).
 inline Index read_count(ReadContext& reading, std::string_view what, std::int64_t text_bytes,
                         std::int64_t binary_bytes) {
   const std::int64_t count = read_number(reading, what);
@@ -298,7 +298,7 @@ void write_rows(NumberWriter& sink, Index count, const Row& row) {
 struct WriteContext {
   const Mesh& mesh;
   const GmshMetadata& layout;
-  std::vector<const ElementType*> types;      ///< of each cell
+  std::vector<const ElementType*> types;      ///< type of each cell
   std::vector<std::int64_t> node_ids;         ///< empty: 1, 2, 3 …
   std::vector<std::int64_t> cell_ids;         ///< empty: 1, 2, 3 …
   std::vector<std::int32_t> cell_dimensions;  ///< 4.1: of each cell's entity

@@ -21,7 +21,7 @@ bool is_entry(const Mesh& /*mesh*/, Shape shape, int vertices) {
 }
 
 void claim_vertices(Index count) {
-  constexpr std::uint64_t kBytes = 12;  // of a vertex; each byte is counted kCopiesOfClaim times
+  constexpr std::uint64_t kBytes = 12;  // bytes of a vertex; each byte is counted kCopiesOfClaim times
   claim_memory(bytes_for(static_cast<std::uint64_t>(count), kBytes), "the vertices");
 }
 

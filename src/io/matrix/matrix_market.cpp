@@ -153,7 +153,7 @@ class MatrixReader {
     }
     entries_ = in_.count("the number of entries", 4);
     if (!in_.at_line_end()) in_.fail("the line of sizes has too many numbers", "three are needed");
-    // a large number of rows must not exceed the bytes that follow
+    // a large number of rows must not exceed the number of bytes that follow
     constexpr std::int64_t kFewRows = 1 << 20;
     if (rows < 0 || rows > kFewRows) (void)in_.checked_count(rows, "the number of rows", 1);
     claim_vertices(static_cast<Index>(rows));

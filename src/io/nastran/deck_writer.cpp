@@ -394,11 +394,11 @@ class BulkWriter {
   Source source_;
   Notes& notes_;
   OutputFile file_;
-  CardWriter writer_;                                                 // of texts between nodes and elements
-  std::vector<Index> node_at_ = source_.numbers.nodes.items();        // node of the deck at each vertex
+  CardWriter writer_;                                           // writes texts between nodes and elements
+  std::vector<Index> node_at_ = source_.numbers.nodes.items();  // node of the deck at each vertex
   std::vector<Index> element_at_ = source_.numbers.elements.items();  // element of the deck at each cell
   std::vector<Item> items_;
-  std::mutex mutex_;  // of the members below
+  std::mutex mutex_;  // protects the members below
   std::exception_ptr error_;
   Index first_with_error_ = kMaxIndex;
 };

@@ -68,7 +68,7 @@ std::string_view card_of(Shape shape, int nodes) {
 std::size_t node_place(Shape shape, int nodes, std::size_t k) {
   const bool is_bent = (shape == Shape::hexahedron && nodes == 20) || (shape == Shape::wedge && nodes == 15);
   if (!is_bent) return k;
-  const std::size_t edges = shape == Shape::hexahedron ? 4 : 3;  // number on the bottom
+  const std::size_t edges = shape == Shape::hexahedron ? 4 : 3;  // number of edges of the bottom face
   const std::size_t top = 3 * edges;                             // VTK's edges of the top begin here
   if (k < top) return k;
   return k < top + edges ? k + edges : k - edges;

@@ -34,7 +34,7 @@ struct Deck : DeckContents {
   Piece bulk;        ///< the lines between BEGIN BULK and ENDDATA, or all lines
   std::vector<Piece> node_cards;
   std::vector<ElementCard> element_cards;
-  std::vector<Point> points;        ///< of the nodes, in the basic system
+  std::vector<Point> points;        ///< positions of the nodes in the basic system
   bool has_default_system = false;  ///< whether GRDSET gives a system to nodes that name no system
   /// Properties that BAROR and BEAMOR give to elements that name no property, by the name of the elements'
   /// card.
@@ -59,7 +59,7 @@ Mesh read(const FilePath& path, Notes& notes);
 
 /// Thrown for a card that cannot be read.
 struct Fault {
-  std::size_t byte = 0;  ///< of the text, where the card begins
+  std::size_t byte = 0;  ///< byte of the text at which the card begins
   std::string what;
   std::string remedy;
 };
@@ -73,7 +73,7 @@ struct Card {
   Kind kind = Kind::other;
   bool has_more = false;        ///< whether the card has fields that are not stored here
   bool lacks_nodes = false;     ///< whether some nodes of edges are missing, so that only corners count
-  std::int64_t number = 0;      ///< of the node or element
+  std::int64_t number = 0;      ///< number of the node or element
   std::int64_t group = kBlank;  ///< system of the node or property of the element; kBlank if it names none
   Point point{};
   const ElementType* type = nullptr;

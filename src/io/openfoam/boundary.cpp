@@ -63,7 +63,7 @@ class BoundaryReader {
     Patch patch{.name = word()};
     if (patch.name == ")") return std::nullopt;
     if (word() != "{") file_.fail(fmt::format("expected '{{' after the patch '{}'", patch.name), kRemedy);
-    int depth = 1;  // of braces: deeper braces contain entries that are not the patch's
+    int depth = 1;  // depth of braces; entries in deeper braces are not the patch's
     while (depth > 0) {
       const std::string key = word();
       if (key == "{") ++depth;

@@ -7,7 +7,7 @@
 namespace meshorder {
 namespace {
 
-/// Parses all of `text`; returns whether it is a number of type T.
+/// Parses `text`; returns whether all of it is a number of type T.
 template <class T>
 bool parse_all(std::string_view text, T& value) {
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);

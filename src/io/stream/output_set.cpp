@@ -157,7 +157,7 @@ std::vector<std::string> put_in_place(std::span<const FinishedFile> files,
     }
     fresh.emplace_back(file.scratch / Scratch::kNew, place.path, file.scratch / Scratch::kOld);
   }
-  std::vector<Scratch> scratches;  // for the removed files
+  std::vector<Scratch> scratches;  // scratch folders of the removed files
   std::vector<Move> moves;
   const auto take_away = [&](const FilePath& file) {
     if (!is_there(file.path())) return;

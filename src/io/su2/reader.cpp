@@ -408,12 +408,12 @@ class Su2Reader {
   Notes& notes_;
   Mesh mesh_;
   std::shared_ptr<Su2Metadata> metadata_ = std::make_shared<Su2Metadata>();
-  std::string keyword_;  // of the last line with a keyword, in capitals
+  std::string keyword_;  // keyword of the last line with a keyword, in capitals
   std::string value_;
   std::string lines_;  // lines to be kept
   std::unordered_set<SectionKind> sections_seen_;
   std::unordered_set<std::string> names_seen_;
-  std::vector<std::int64_t> labels_;  // of the cells so far; empty if no cell has a label
+  std::vector<std::int64_t> labels_;  // labels of the cells so far; empty if no cell has a label
   Index elements_ = 0;                // number of elements of the highest dimension
   Index markers_said_ = -1;
   std::int64_t largest_node_ = -1;

@@ -46,7 +46,7 @@ struct Su2Metadata final : FormatMetadata {
     points,
     marker_count,
     marker,
-    surface_points,  ///< of a box of free-form deformation
+    surface_points,  ///< surface points of a box of free-form deformation
     verbatim
   };
   /// A line of FFD_SURFACE_POINTS=, which names a point.
@@ -61,7 +61,7 @@ struct Su2Metadata final : FormatMetadata {
     std::string comments = {};  ///< the lines between MARKER_TAG= and MARKER_ELEMS=
     std::vector<SurfacePoint> surface_points = {};
   };
-  std::vector<FileSection> sections;    ///< in the order of the file
+  std::vector<FileSection> sections;    ///< sections in the order of the file
   std::vector<std::string> keywords;    ///< keywords of the lines that are kept as they are
   bool counts_physical_points = false;  ///< NPOIN= gives a second number
   bool numbers_elements = false;  ///< lines of elements end with their number, from 0; the next two say the

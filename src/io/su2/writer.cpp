@@ -43,10 +43,10 @@ struct Markers {
   }
 
   const Mesh& mesh;
-  int dimension;  ///< of the elements; boundary cells have one dimension less
+  int dimension;  ///< dimension of the elements; boundary cells have one dimension less
   std::vector<Marker> markers;
   std::map<std::string, std::size_t, std::less<>> places;  ///< positions in `markers`, by name
-  DistinctNames names;                                     ///< of the sets' markers
+  DistinctNames names;                                     ///< names of the sets' markers
   std::vector<bool> marked;
   Notes notes;
   bool has_lost_labels = false;

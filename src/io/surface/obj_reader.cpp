@@ -557,7 +557,7 @@ class Reader {
   CornerIndices normal_indices_;
   Named groups_;
   std::array<Named, kStates.size()> states_;
-  std::vector<Index> corners_;  // of the cell that is being read
+  std::vector<Index> corners_;  // corners of the cell that is being read
   std::vector<std::int32_t> corner_texture_;
   std::vector<std::int32_t> corner_normals_;
 };

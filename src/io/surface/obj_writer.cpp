@@ -325,7 +325,7 @@ class ObjWriter {
   std::array<std::string, kStates.size()> current_;  // the last names written before the cells
   std::vector<Offset> group_offsets_;
   std::vector<Index> groups_;
-  std::vector<std::string> group_names_;  // of all sets; empty for sets of vertices
+  std::vector<std::string> group_names_;  // name for each set; empty for sets of vertices
   bool in_group_ = false;
 };
 

@@ -80,8 +80,8 @@ struct Element {
   Index count = 0;
   std::vector<Property> properties;
   Role role = Role::other;
-  std::string content;            ///< of other elements: the lines or bytes, verbatim
-  std::string why_left_out = {};  ///< of other elements: why it is not written; else empty
+  std::string content;            ///< lines or bytes of an element with Role::other, verbatim
+  std::string why_left_out = {};  ///< why an element with Role::other is not written; else empty
 };
 
 inline bool holds_cells(const Element& element) {

@@ -39,7 +39,7 @@ using ply::TypeWord;
 /// The source of a property's numbers.
 struct ArraySource {
   const DataArray* array = nullptr;
-  Index component = 0;        ///< of a property that is not a list
+  Index component = 0;        ///< component of the array, for a property that is not a list
   std::vector<Index> row_of;  ///< the row of each vertex or cell, −1 for none; empty if row i belongs to i
 };
 
@@ -333,7 +333,7 @@ class Columns {
   Notes& notes_;
   Association on_;
   std::vector<bool> is_item_;
-  std::multimap<std::string_view, const DataArray*> arrays_;  // of the mesh, by name
+  std::multimap<std::string_view, const DataArray*> arrays_;  // arrays of the mesh, by name
   std::set<const DataArray*> used_;
   std::set<std::string> names_;  // names of the columns
 };

@@ -35,7 +35,7 @@ constexpr auto kOrder = std::endian::little;
 struct StlMetadata : FormatMetadata {
   bool binary = false;
   std::string header;                ///< the 80 bytes of a binary file
-  std::vector<std::string> names;    ///< of the solids of an ASCII file, also of empty ones
+  std::vector<std::string> names;    ///< names of the solids of an ASCII file, also of empty ones
   std::vector<std::int64_t> labels;  ///< the label of the cells of each solid
 
   [[nodiscard]] std::vector<std::string> contents() const override {

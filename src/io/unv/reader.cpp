@@ -135,7 +135,7 @@ class UnvReader {
     keep(dataset_, line_);
   }
 
-  /// Lists a dataset that is kept as it is.
+  /// Records a dataset that is kept as it is, as unknown unless `is_harmless`.
   void keep(int dataset, std::int64_t line) {
     const std::string name = fmt::format("dataset {}", dataset);
     if (!is_harmless(dataset)) file_->unknown.push_back(fmt::format("{} (line {})", name, line));
