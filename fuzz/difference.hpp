@@ -22,7 +22,8 @@ enum class Extent : std::uint8_t {
 /// may have any order. O(size of the meshes · log members).
 std::string difference(const Mesh& found, const Mesh& expected, Extent extent);
 
-/// Returns the same for cells, where cell c of `expected` is cell `places.old_to_new()[c]` of `found`.
+/// Returns the first difference between cells; cell c of `expected` is cell `places.old_to_new()[c]` of
+/// `found`.
 std::string difference_of_cells(const Cells& found, const Cells& expected, const Permutation& places);
 
 }  // namespace meshorder::fuzz

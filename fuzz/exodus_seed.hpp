@@ -7,8 +7,8 @@
 
 namespace meshorder::fuzz {
 
-/// Writes a file of Exodus II of some kilobytes with blocks, sets, sides, attributes, maps and variables of
-/// all kinds in two steps. Files written from meshes of other formats lack most of these.
+/// Writes an Exodus II file of some kilobytes that has blocks, sets, sides, attributes, maps and variables of
+/// all kinds, and two time steps. Files written from meshes of other formats lack most of these.
 void write_exodus_seed(const std::filesystem::path& path, const exodus::Storage& storage);
 
 }  // namespace meshorder::fuzz

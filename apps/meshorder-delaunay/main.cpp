@@ -8,7 +8,7 @@
 // - for each tetrahedron, the numbers of its four neighbours (4 bytes each), each opposite a corner; −1 where
 //   a face is on the hull.
 //
-// These parts of CGAL are under the GPL, so this is a separate program: see README.md of meshorder-models.
+// CGAL's triangulations are under the GPL, so this is a separate program: see README.md of meshorder-models.
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Delaunay_triangulation_cell_base_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -14,7 +14,7 @@ namespace {
 
 using namespace meshorder::command;
 
-/// In the order of kLabCommands.
+/// The functions that add the subcommands, in the order of kLabCommands.
 constexpr std::array kAdders{add_simulate, add_reproduce, add_report, add_models};
 static_assert(kAdders.size() == kLabCommands.size());
 

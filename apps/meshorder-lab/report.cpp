@@ -36,7 +36,7 @@ namespace fs = std::filesystem;
 
 struct ReportArguments : Common {
   std::vector<std::string> inputs;
-  /// Empty: report.html, for a study in its folder; for two studies comparison.html.
+  /// File for the page. Empty: report.html (for a study, in its folder), or comparison.html for two studies.
   std::string output;
   double budget_seconds = TimingOptions{}.budget_seconds;
   OrderOptions ordering;
@@ -54,7 +54,7 @@ std::vector<OrderingSpec> orderings_of_report() {
           {"scrambled", "Scrambled", "scrambled", "scrambled"}};
 }
 
-/// Returns whether an order differs from another order only in its elements, which a matrix lacks.
+/// Returns whether another order has the same vertices and other elements; for a matrix the two are equal.
 bool orders_elements(const OrderingSpec& ordering) { return ordering.name == "vf-fiedler"; }
 
 /// Returns the predicted and measured times of an order, as `info` takes them.
@@ -103,7 +103,7 @@ std::string unique_name(const std::string& file, const std::vector<MeshRecord>& 
 }
 
 /// Reads a mesh, measures it in the report's orders and adds it to the page; returns its size in words.
-/// Its share of the progress is `from` … `to`.
+/// Moves the progress from the share `from` to the share `to`.
 std::string add_mesh(Page& page, const std::string& file, const ReportArguments& arguments,
                      Progress& progress, double from, double to, Notes& notes) {
   progress.stage("reading " + file, from, from + 0.1 * (to - from));
@@ -117,7 +117,7 @@ std::string add_mesh(Page& page, const std::string& file, const ReportArguments&
   MeshStudyOptions options;
   options.ordering = arguments.ordering;
   options.timing.budget_seconds = arguments.budget_seconds;
-  options.hierarchies = {hierarchies_of_studies().front()};  // omits those of the paper's machine
+  options.hierarchies = {hierarchies_of_studies().front()};  // omits the caches of the paper's machine
   options.progress = [&](std::string_view what, double fraction) {
     progress.stage(fmt::format("{}: {}", name, what), from + (0.1 + 0.8 * fraction) * (to - from), to);
   };
@@ -151,8 +151,8 @@ std::string title_of(const Page& page) {
   return fmt::format("The gain from orders of {}", fmt::join(names, ", "));
 }
 
-/// Throws InvalidArgument for a name that is not that of a page: a page would overwrite such a file, perhaps
-/// a mesh.
+/// Throws InvalidArgument unless the output's name has the extension of a page: the page would overwrite the
+/// file, which may be a mesh.
 void check_name_of_page(const std::string& output, const char* of) {
   const std::string extension = fs::path(output).extension().string();
   if (same_but_for_case(extension, ".html") || same_but_for_case(extension, ".htm")) return;
@@ -208,7 +208,7 @@ bool is_study(const std::string& input) {
   return fs::is_directory(input) || fs::path(input).extension() == ".json";
 }
 
-/// Returns the results.json of an argument that names a study.
+/// Returns the path of results.json for an argument that names a study.
 FilePath results_of(const std::string& input) {
   if (!fs::is_directory(input)) return {input};
   const StudyFolder folder(input);

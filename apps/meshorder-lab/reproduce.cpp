@@ -148,7 +148,7 @@ void add_reproduce(CLI::App& subcommand) {
 
 void add_serve_steps(CLI::App& subcommand) {
   subcommand.description("Serve a study: read tasks on standard input and simulate them");
-  subcommand.group("");  // for `reproduce` only: not shown in the help
+  subcommand.group("");  // the help omits this subcommand, which only `reproduce` starts
   const auto arguments = std::make_shared<Common>();
   add_reading_options(subcommand);
   add_common(subcommand, *arguments);

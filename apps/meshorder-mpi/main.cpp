@@ -42,7 +42,7 @@ constexpr std::array<std::string_view, 9> kOptionsOfOneProcess{"--elements",  "-
                                                                "--tolerance", "--measure",     "--predict",
                                                                "--machine",   "--all-threads", "--timings"};
 
-/// Returns the fault if the arguments have one of `kOptionsOfOneProcess`.
+/// Returns an error message if the arguments have one of `kOptionsOfOneProcess`.
 std::optional<std::string> option_of_one_process(const CLI::App& app) {
   for (const std::string& word : app.remaining(true)) {
     const std::string name = word.substr(0, word.find('='));
@@ -101,8 +101,8 @@ int report_launcher(bool is_first_process) {
              : kBadInput;
 }
 
-/// Ends all ranks after a failure of this one: the others do not know of the failure and might wait for this
-/// rank.
+/// Ends all ranks after a failure of this rank: the other ranks do not know of the failure and might wait for
+/// this rank.
 [[noreturn]] void abort_all(const std::string& message) noexcept {
   meshorder::remove_unfinished_outputs();
   meshorder::distributed::Session::abort(report_failure(message, kOwnFailure));

@@ -28,8 +28,8 @@ class NemesisOutputs {
   /// Returns the names of the files that `open` made.
   [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
 
-  /// Adds the files, which are written by now, to the set. The set also removes other pieces of an earlier
-  /// run.
+  /// Adds the files to the set; call it after they are written. The set also removes other pieces of an
+  /// earlier run.
   void add_to(OutputSet& set);
 
   /// Returns the file of the first piece; before `open`, the name without numbers.

@@ -91,7 +91,7 @@ void check_count_of_pieces(const Communicator& communicator, const Arguments& ar
   });
 }
 
-/// Throws SharedError if there are more parts than vertices. `mesh` is the one that the root read, if any.
+/// Throws SharedError if there are more parts than vertices. `mesh` is empty unless the root read it.
 void check_parts(const Communicator& communicator, Index parts, GlobalIndex vertices, const Mesh& mesh) {
   communicator.at_root([&] {
     if (parts <= vertices) return;
@@ -122,7 +122,7 @@ void require_points_of(const Communicator& communicator, const Mesh& mesh, const
 /// - the input is not a .vtu, .vtkhdf or .xdmf file;
 /// - the output has another extension than the input;
 /// - rank 0 has to read and write;
-/// - maps are wanted, but there is no output, or a Mesh would have the nodes of some cells in another order;
+/// - maps are wanted, and there is no output or a Mesh would have the nodes of some cells in another order;
 /// - pieces of an .xdmf file, or pieces in Nemesis, are wanted.
 std::optional<FileHead> head_of(const Communicator& communicator, const Arguments& arguments) {
   const auto extension = [](const std::string& name) { return std::filesystem::path(name).extension(); };
@@ -220,7 +220,7 @@ nlohmann::ordered_json to_json(const DistributedOptions& options, const Distribu
           {"seconds", seconds}};
 }
 
-/// What a run did, for its report at the root.
+/// The results of a run, which the root reports.
 struct Finished {
   const Arguments& arguments;
   const DistributedOptions& options;
@@ -335,7 +335,7 @@ void run(const Arguments& arguments, const Communicator& communicator) {
   });
 }
 
-/// Returns the threads of this rank: its share of the machine's cores.
+/// Returns the number of threads of this rank: its share of the machine's cores.
 int share_of_cores(const Communicator& communicator) {
   return std::max(
       1, static_cast<int>(std::thread::hardware_concurrency()) / communicator.ranks_on_this_machine());

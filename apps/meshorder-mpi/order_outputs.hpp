@@ -24,8 +24,8 @@ struct OrderFiles : MeshFiles {
   std::string pieces;  ///< folder, a .vtkhdf file, or a name of Exodus II; empty: no pieces
   int ghosts = 1;      ///< layers of ghost cells in pieces, 0 or 1
 
-  /// Returns the files with an output whose extension sets the format; without an output, the
-  /// extension is that of the pieces.
+  /// Returns the files with an output, whose extension sets the format. If there is none, `output` becomes a
+  /// name with the extension of the pieces.
   [[nodiscard]] MeshFiles with_output() const;
   /// Returns whether the pieces are the partitions of one file.
   [[nodiscard]] bool has_pieces_in_one_file() const;
@@ -90,7 +90,7 @@ class OrderOutputs {
 
   const distributed::Communicator& communicator_;
   const OrderFiles& files_;
-  /// At the root. Destroyed after the set, so that its folder can be removed if no piece was put in place.
+  /// At the root. Destroyed after `set_`: the destructor removes the folder if no piece was put in place.
   std::optional<PieceOutputs> pieces_;
   std::optional<NemesisOutputs> nemesis_;  ///< at the root
   OutputSet set_;

@@ -32,7 +32,7 @@ bool is_name_of_piece(std::string_view file, std::string_view name) {
          file.find_first_not_of("0123456789", 1) == std::string_view::npos;
 }
 
-/// Returns whether a path has the extension of files of meshes.
+/// Returns whether a path has the extension of a mesh format.
 bool names_mesh_file(const fs::path& path) {
   const std::string extension = path.extension().string();
   return std::ranges::any_of(all_formats(), [&](const Format& format) {

@@ -32,8 +32,7 @@ class PieceOutputs {
   /// Makes the files of `pieces` pieces; returns the paths under which to write them.
   std::vector<std::string> open(Index pieces);
 
-  /// Adds the files, which are complete, and NAME.pvtu to a set. The set also removes other pieces of an
-  /// earlier run.
+  /// Adds the complete files and NAME.pvtu to a set. The set also removes other pieces of an earlier run.
   ///
   /// @param index  content of NAME.pvtu
   void add_to(OutputSet& set, const std::string& index);

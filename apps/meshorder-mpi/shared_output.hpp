@@ -23,7 +23,7 @@ class SharedOutput {
   /// Returns the path under which the ranks write.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
-  /// Adds the file, which is closed by now, to the set.
+  /// Adds the file to the set; call it after all ranks have closed the file.
   void commit();
 
  private:

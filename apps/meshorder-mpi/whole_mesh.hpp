@@ -14,7 +14,7 @@ namespace meshorder::command {
 
 /// A mesh that rank 0 reads, moves and writes, with its cells in the order that the output's format needs.
 struct WholeMesh : MeshToOrder {
-  std::optional<Permutation> arranged;  ///< from the cells as they were read to this order, if they moved
+  std::optional<Permutation> arranged;  ///< from the file's order of cells to this order, if they differ
 };
 
 /// Reads a mesh into the memory of the root. Every rank has to call it.
@@ -24,8 +24,8 @@ struct WholeMesh : MeshToOrder {
 [[nodiscard]] WholeMesh read_at_root(const distributed::Communicator& communicator, const MeshFiles& files,
                                      Ids ids, Notes& notes);
 
-/// Moves the mesh at the root into its new order and fills in its maps. Entries of a matrix keep their
-/// places. Every rank has to call it.
+/// Moves the mesh at the root into its new order and fills in its maps. Entries of a matrix stay in the order
+/// of the file. Every rank has to call it.
 ///
 /// @param files  as in `read_at_root`
 void move_at_root(const distributed::Communicator& communicator, WholeMesh& whole,

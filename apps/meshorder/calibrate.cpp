@@ -27,7 +27,7 @@ struct CalibrateArguments : Common {
   double seconds = CalibrationEffort{}.seconds;
 };
 
-/// Calls `work` with its progress on the terminal.
+/// Calls `work` and shows its progress on the terminal.
 template <class Work>
 auto watched(const CalibrateArguments& arguments, const std::string& what, const Work& work) {
   Progress progress(!arguments.quiet);

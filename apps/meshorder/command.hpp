@@ -72,7 +72,7 @@ void add_ordering_options(CLI::App& subcommand, OrderOptions& options);
 /// Adds --ids; parse<Ids> reads its value.
 CLI::Option* add_ids_option(CLI::App& subcommand, std::string& ids);
 
-/// Which cells the output keeps, and whether it may lose anything.
+/// Options that say which cells the output keeps, and whether it may lose data.
 struct Keeping {
   int dimension = -1;   ///< of the cells to keep; −1 for all
   bool strict = false;  ///< refuse any loss

@@ -26,8 +26,8 @@ namespace {
 
 constexpr const char* kBand = "band";
 
-/// Returns the time divided by the band's. Both are relative to the file's own order: orders that do not fit
-/// into memory together are timed in groups, and each group contains that order.
+/// Returns the time of an order divided by that of the order `band`. Both are relative to the file's order:
+/// orders that do not fit into memory together are timed in groups, and each group contains the file's order.
 double of_band(const KernelTimes& times, const KernelTimes& band) { return band.speedup / times.speedup; }
 
 /// Returns the name of an order in the table: "hilbert", or "rcm (auto)".
@@ -325,7 +325,7 @@ nlohmann::ordered_json to_json(const ComparisonReport& comparison) {
     }
     methods.push_back(method);
     if (i > 0 || !comparison.auto_keeps) continue;
-    // lists the order once more, under the names that `auto` chose
+    // lists the file's order once more, under the methods that `auto` chose
     method["vertices"] = comparison.auto_keeps->vertices;
     method["elements"] = comparison.auto_keeps->elements;
     methods.push_back(method);

@@ -47,7 +47,7 @@ std::vector<std::string> gpu_card_names();
 /// Returns a card by its name; null for an empty or unknown name.
 const GpuCard* gpu_card(std::string_view name);
 
-/// A kernel in the file's order and in that for graphics processors.
+/// Costs of a kernel in the file's order and in the order for graphics processors.
 struct CountedKernel {
   std::string_view key;    ///< in JSON
   std::string_view title;  ///< in a table
@@ -72,7 +72,7 @@ struct GpuReport {
 /// Orders a mesh for graphics processors, and counts kernels in its own order and in the new one.
 ///
 /// @param graph  of its vertices
-/// @param card   whose times are computed for 100,000 linear tetrahedra or more; or null
+/// @param card   null: no times; otherwise, times on it for meshes of 100,000 linear tetrahedra or more
 GpuReport gpu_report(const Mesh& mesh, const CsrGraph& graph, const GpuCard* card);
 
 /// Returns in a sentence whether the mesh is in a good order for a graphics processor.

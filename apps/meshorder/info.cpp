@@ -58,20 +58,20 @@ struct InfoArguments : Common {
 
 /// Seconds from the start of the command to the end of --measure, for up to about 300 thousand vertices.
 constexpr double kMeasureWithin = 3.8;
-/// The same without --measure. Kernels run within this time on meshes of up to `kMaxQuick` simplices and on
-/// matrices of up to `kMaxQuickEntries` entries.
+/// The same without --measure, for meshes of up to `kMaxQuick` simplices and matrices of up to
+/// `kMaxQuickEntries` entries.
 constexpr double kMeasureQuicklyWithin = 0.7;
 constexpr Offset kMaxQuick = 250'000;
 constexpr Offset kMaxQuickEntries = 1'000'000;
 /// The smallest first-level cache of today's processors, bytes.
 constexpr Offset kFirstCache = 32 * 1024;
-/// Largest number of simplices for which times are predicted by default; that takes seconds per million
-/// vertices.
+/// Largest number of simplices for which times are predicted by default. A prediction takes seconds per
+/// million vertices.
 constexpr Offset kMaxPredicted = 100'000'000;
 /// Largest number of simplices for which there is time to measure a second order.
 constexpr Offset kMaxOfTwoOrders = 500'000;
 
-/// Returns whether the kernels have something to compute: points are not elements.
+/// Returns whether the mesh has elements, which the kernels need; points are not elements.
 bool has_elements(SimplicesRef simplices) { return simplices.size() > 0; }
 
 /// Returns whether times are predicted: with --cache always, else for up to `kMaxPredicted` simplices.
@@ -90,8 +90,8 @@ bool fits_in_first_cache(const CsrGraph& graph) {
 /// How the gain is determined.
 enum class By : std::uint8_t { prediction, quick_measurement, measurement, counts };
 
-/// Returns how the gain is determined: by kernels that run at most two seconds, unless times or counts are
-/// requested.
+/// Returns how the gain is determined: by a short measurement on small meshes, unless the user requests
+/// something else; by a prediction on large meshes.
 By judged_by(const InfoArguments& arguments, const Mesh& mesh, SimplicesRef simplices,
              const MachineChoice& machine) {
   if (arguments.gpu) return By::counts;

@@ -20,9 +20,9 @@ void add_all_threads_option(CLI::App& subcommand, bool& all_threads);
 /// Adds --kernels, plain or tuned.
 void add_kernels_option(CLI::App& subcommand, KernelSet& kernels);
 
-/// Returns the machine to predict for. If the choice stands in for this machine, which is not calibrated,
-/// this function calibrates this machine and stores the result. A line on stderr says so, unless `quiet`.
-/// `notes` receives a sentence if something went wrong.
+/// Returns the machine to predict for. If `choice` is only a substitute because this machine is not yet
+/// calibrated, calibrates this machine and stores the result. Reports this on stderr unless `quiet`. `notes`
+/// receives a sentence if something went wrong.
 MachineChoice calibrated(MachineChoice choice, bool all_threads, Progress& progress, bool quiet,
                          Notes& notes);
 

@@ -116,7 +116,7 @@ struct Subcommand {
   void (*add)(CLI::App& subcommand);
 };
 
-/// In the order of the help; there the subcommands of the laboratory and then `methods` follow.
+/// The subcommands in the order of the help, which then lists those of the laboratory, and `methods`.
 constexpr std::array kSubcommands{
     Subcommand{"order", add_order},
     Subcommand{"apply", add_apply},

@@ -28,7 +28,7 @@ struct MatrixReport {
 void print_attachments(const Console& console, const Mesh& mesh, const char* on_vertices,
                        const char* on_cells);
 
-/// Prints the report in terms of matrices, or of graphs. `mesh` is the one that was read.
+/// Prints the report in terms of matrices, or of graphs. `mesh` is as it was read.
 void print_matrix(const Console& console, const Mesh& mesh, const MatrixReport& report,
                   const GraphFacts& graph);
 

@@ -42,8 +42,8 @@ void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids
 /// @param bytes_of_entry  as in `limit_joins`
 Mesh read_to_work_on(const FilePath& path, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
 
-/// Like kBytesToOrder. kBytesToPredict is for commands that predict times. kBytesToMeasure is for commands
-/// that run kernels, and counts once for each order that they hold at a time.
+/// Bytes for each entry of a graph, like kBytesToOrder: kBytesToPredict to predict times; kBytesToMeasure to
+/// run kernels, for each order that the command holds in memory at a time.
 inline constexpr std::uint64_t kBytesToPredict = 64;
 inline constexpr std::uint64_t kBytesToMeasure = 100;
 

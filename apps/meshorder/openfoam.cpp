@@ -67,7 +67,7 @@ std::vector<std::string> folders_in(const fs::path& path) {
   return names;
 }
 
-/// A case, and the choice of its meshes.
+/// A case, and those of its meshes that are to be ordered.
 class Case {
  public:
   explicit Case(const OpenFoamArguments& arguments)
@@ -283,7 +283,7 @@ class Outputs {
     if (dictionary_) {
       (void)OutputFile(*dictionary_);
     } else if (!fs::is_symlink(dictionary.parent_path())) {
-      remove_dead_scratches(dictionary.parent_path());  // that a killed run left
+      remove_dead_scratches(dictionary.parent_path());  // removes what a killed run left
     }
   }
 

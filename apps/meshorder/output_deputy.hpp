@@ -29,9 +29,10 @@ class OutputDeputy {
   /// Returns the outputs that are written to directly, not replaced: devices and pipes.
   [[nodiscard]] const std::vector<std::filesystem::path>& through() const noexcept { return through_; }
 
-  /// In the child: makes it use these scratch folders, and ask the other process to put its files in place.
+  /// Call it in the child: this process then writes in these scratch folders, and asks the parent to put its
+  /// files in place.
   void serve_this_process();
-  /// In the other process: does what the child asks, until the child ends.
+  /// Call it in the parent: does what the child asks, until the child ends.
   void serve_child();
 
  private:
@@ -47,7 +48,7 @@ class OutputDeputy {
   void add_home(const std::filesystem::path& target);
   /// Returns an output that may be put in place. Throws Error for any other path.
   [[nodiscard]] FilePath allowed(const std::string& path) const;
-  /// Moves a file from its scratch folder to one of this process, where the child cannot reach it.
+  /// Moves a file from its scratch folder to a scratch folder of the parent, which the child cannot reach.
   [[nodiscard]] Scratch taken(const std::string& scratch, const FilePath& target) const;
   [[nodiscard]] std::vector<std::string> do_as_asked(std::string_view request) const;
 

@@ -37,7 +37,8 @@ class PrintedNumbers {
 std::string difference(const std::vector<double>& expected, const std::vector<double>& found,
                        double tolerance);
 
-/// Returns where two texts differ, word by word: numbers are compared by the same rule, other words exactly.
+/// Compares two texts word by word, numbers with the limits above and other words exactly. Returns where they
+/// differ.
 std::string difference(std::string_view expected, std::string_view found, double tolerance);
 
 /// Returns the files that hold a program's stdout and stderr; see TrialCommand::log.

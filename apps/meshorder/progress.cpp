@@ -31,7 +31,7 @@ Progress::Progress(bool enabled) : began_(now()) {
   try {
     drawer_ = std::thread([this] { draw_until_done(); });
   } catch (const std::system_error&) {
-    // no thread can be made: the work continues without a line
+    // no thread can be started: the work continues without a progress line
   }
 }
 
@@ -67,7 +67,7 @@ void Progress::draw_until_done() noexcept {
     try {
       draw(elapsed);
     } catch (const std::bad_alloc&) {
-      // the line stays as it is
+      // without memory for new text, the line stays as it is
     }
   }
   if (drawn_) write_stderr("\r\x1b[K");

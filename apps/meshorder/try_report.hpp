@@ -21,7 +21,7 @@ struct TriedOrder {
   MeshMethods methods;          ///< for the options of `order`
   bool by_auto = false;         ///< `auto` chose it
   std::string made_by{};        ///< the command that makes it
-  double order_seconds = 0;     ///< seconds of that command, for a mesh with reading and writing
+  double order_seconds = 0;     ///< seconds of that command; for a mesh, reading and writing included
   std::vector<double> times{};  ///< of the runs that count
   double count = -1;            ///< number captured by --count; negative: none
   std::int64_t peak_bytes = 0;

@@ -120,7 +120,7 @@ std::optional<std::string> line_with_output(const CLI::App& command, const std::
   return in_shell(name) + " -o " + in_shell(names_output ? words.front() : ordered_name(name));
 }
 
-/// Returns the fault if the program of `try` comes without -- before it.
+/// Returns an error message if `try` is given a program without -- before it.
 std::optional<std::string> program_without_mark(const Place& place, const std::vector<std::string>& words) {
   if (place.command->get_name() != "try" || words.empty() || words.front().starts_with('-'))
     return std::nullopt;

@@ -59,7 +59,7 @@ HWY_INLINE typename Lanes::Value plus_squares(typename Lanes::Value sum,
 // Energies, gradients and Hessians of a law are per volume, divided by the bulk modulus κ, and functions of
 // the signed singular values σ. m = μ/κ, l = λ/κ = 1 − ⅔m.
 
-/// ¼m Σ (σᵢ² − 1)² + ⅛l (Σ σᵢ² − 3)².
+/// MaterialModel::stvk, with the energy ¼m Σ (σᵢ² − 1)² + ⅛l (Σ σᵢ² − 3)².
 template <class Lanes>
 struct StvkSteps {
   using Value = typename Lanes::Value;
@@ -172,7 +172,8 @@ struct NeoHookeanSteps {
   }
 };
 
-/// ½m (Σ σᵢ² − 3) − m log J + ½l log² J, J = σ₁σ₂σ₃; infinite unless all σᵢ are positive.
+/// LocalModel::log_neo_hookean, with the energy ½m (Σ σᵢ² − 3) − m log J + ½l log² J, J = σ₁σ₂σ₃. The energy
+/// is infinite unless all σᵢ are positive.
 template <class Lanes>
 struct LogNeoHookeanSteps {
   using Value = typename Lanes::Value;

@@ -33,8 +33,8 @@ struct LocalElements {
   [[nodiscard]] Index vertex(Offset element, Index corner) const {
     return vertices[place(element, corners) + corner * kLocalBatch<Real>];
   }
-  /// Sets d to D of one element, `corners` numbers for each column of D x: 1 and −1, or the corners' shape
-  /// gradients. Returns w².
+  /// Sets row k of d to the coefficients of corner k in an element's D: 1 or −1 for a spring, else the
+  /// corner's shape gradient. Returns w².
   double load(Offset element, double (&d)[4][3]) const;
 
   /// Returns the index of an element's first number in an array of `numbers` numbers for each element.

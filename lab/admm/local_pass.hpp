@@ -5,7 +5,7 @@
 
 namespace meshorder {
 
-/// Local steps take as many elements at a time as an AVX-512 register has numbers.
+/// Number of elements that local steps process at a time: as many as an AVX-512 register has numbers.
 template <class Real>
 inline constexpr Index kLocalBatch = 64 / sizeof(Real);
 
@@ -27,7 +27,7 @@ struct LocalPass {
   Real scale = 0;
   const Real* positions = nullptr;
   Real* right_hand_side = nullptr;
-  // of the share's batches, one after another
+  // for the batches of the share, one after another
   Real* duals = nullptr;        ///< 9 quantities of tetrahedra, 3 of springs
   double* residuals = nullptr;  ///< primal and magnitude
 };
@@ -46,8 +46,8 @@ void pass_log_neo_hookean(const LocalPass<float>& pass);
 
 }  // namespace meshorder
 
-/// Defines both functions pass_<law> by the kernels <law>_doubles and <law>_floats of all instruction sets;
-/// to be used in namespace meshorder where HWY_ONCE.
+/// Defines both functions pass_<law> by the kernels <law>_doubles and <law>_floats of all instruction sets.
+/// Use it in namespace meshorder, if HWY_ONCE.
 #define MESHORDER_EXPORT_LOCAL_PASS(law)                                                  \
   MESHORDER_SIMD_VERSIONS(law##_doubles);                                                 \
   MESHORDER_SIMD_VERSIONS(law##_floats);                                                  \

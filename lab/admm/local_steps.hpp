@@ -26,7 +26,7 @@ enum class LocalModel : std::uint8_t {
   springs,  ///< on every edge: D x = x_a − x_b, U = ½k(‖D x‖ − ℓ₀)², w² = k
   strain,  ///< linear tetrahedral strain: D x = F, U = ½kV‖F − R‖², w² = kV (Narain, Overby, Brown 2016)
   stvk,         ///< D x = F, U = VΨ(F) of MaterialModel::stvk, w² = V times the bulk modulus
-  neo_hookean,  ///< the same with MaterialModel::neo_hookean
+  neo_hookean,  ///< like stvk, with Ψ of MaterialModel::neo_hookean
   log_neo_hookean,  ///< ½μ(‖F‖² − 3) − μ log J + ½λ log² J, infinite for J ≤ 0 (Bonet, Wood 1997)
 };
 
@@ -106,7 +106,7 @@ class LocalSteps {
   Index vertex_count_;
   LocalElements<Real> elements_;
   std::vector<OwnedBatches> shares_;
-  std::vector<Offset> first_copies_;  ///< the first copy of each share, whose copies are consecutive
+  std::vector<Offset> first_copies_;  ///< index of each share's first copy; its copies are consecutive
   std::vector<Offset> copies_;        ///< one copy of each batch
   AlignedVector<Real> duals_;
   std::vector<double> residuals_;  ///< of each copy: primal and magnitude

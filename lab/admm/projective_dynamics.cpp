@@ -16,7 +16,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kVertices = 4096;  // in a chunk
+constexpr Index kVertices = 4096;  // of a chunk
 /// Maximum number of repetitions of the last global step while vertices have new contacts.
 constexpr int kLastRounds = 8;
 /// Depth at which a vertex may remain inside, as a share of ContactOptions::reach.
@@ -158,7 +158,8 @@ void ProjectiveDynamics<Real>::predict() {
   });
 }
 
-/// Computes both residuals of the last iteration, whose positions the local steps used.
+/// Computes both residuals of the iteration before the last local steps, which used its positions. Returns
+/// whether they are within the tolerance.
 template <class Real>
 bool ProjectiveDynamics<Real>::has_converged(const LocalResidual& local, StepReport& report) {
   const std::span<const Real> forces(right_side_.data(), x_.size());
@@ -247,7 +248,7 @@ void ProjectiveDynamics<Real>::drop_held_contacts() {
   }
 }
 
-/// Stores the solver's forces on all contacts, 0 on those that were dropped.
+/// Stores the solver's forces of all contacts; contacts that were dropped get 0.
 template <class Real>
 void ProjectiveDynamics<Real>::spread_forces() {
   const std::span<const double> forces = contact_solver_->forces();

@@ -91,7 +91,7 @@ Fluid::Fluid(const FluidOptions& options, Particles particles, FluidOrdering ord
   volume_ = volume_at_start_ = std::accumulate(shares_.begin(), shares_.end(), 0.0);
   const double gravity = norm(options_.gravity);
   if (!(gravity > 0)) return;
-  // hydrostatic, apart from the shape of the free surface
+  // the first pressures are hydrostatic below the highest particle, whatever the shape of the free surface
   double top = 0;
   for (const Point& x : positions_) top = std::max(top, -dot(x, options_.gravity) / gravity);
   for (std::size_t i = 0; i < positions_.size(); ++i)

@@ -23,9 +23,9 @@ namespace meshorder {
 /// - the new velocity u = u* − τ/ρ ∇p;
 /// - the new positions: particles move by Δt u, and slightly apart.
 ///
-/// Velocities are those midway between two positions, so τ is the mean of this Δt and the last one. Free
-/// particles follow their parabola, and waves keep their height. Walls are smooth: ∫ ∇q·u* has no flow
-/// through them, and particles stay on a wall that they reach.
+/// Velocities belong to times midway between two positions, so τ is the mean of this Δt and the last one.
+/// Particles in free fall thus follow a parabola, and waves keep their height. Walls are smooth: ∫ ∇q·u* has
+/// no flow through walls, and particles stay on a wall that they reach.
 ///
 /// Positions and velocities of states and balances are in the order of the particles at the start.
 class Fluid : public Integrator {
@@ -34,7 +34,7 @@ class Fluid : public Integrator {
   /// triangulated.
   Fluid(const FluidOptions& options, FluidOrdering ordering, Triangulate triangulate);
 
-  /// Does the same with the caller's own particles.
+  /// Does the same with the particles that the caller gives.
   Fluid(const FluidOptions& options, Particles particles, FluidOrdering ordering, Triangulate triangulate);
 
   [[nodiscard]] MotionState state() const override;

@@ -15,24 +15,25 @@ namespace meshorder {
 
 /// How particles and tetrahedra of a fluid are ordered.
 struct FluidOrdering {
-  /// Of the particles: "original" leaves them as they start, "scrambled" mixes them at the start.
+  /// Method for the particles: "original" keeps their first order, "scrambled" mixes them at the start.
   std::string vertices = "auto";
   std::string elements = "auto";  ///< of the tetrahedra, in each step; "original": as triangulated
   /// Steps from one order of the particles to the next; 0: a `Reorderer` decides.
   Index every = 0;
   OrderOptions options = {};
 
-  /// Returns whether particles never move after the start.
+  /// Returns whether the order of the particles never changes after the start.
   [[nodiscard]] bool stays() const { return vertices == "original" || vertices == "scrambled"; }
 };
 
-/// Keeps a fluid in order.
+/// Orders the particles and tetrahedra of a fluid during a simulation.
 class FluidOrder {
  public:
   /// Throws InvalidArgument for unknown methods.
   explicit FluidOrder(FluidOrdering ordering);
 
-  /// Returns where the particles move before step `step`, counted from 0; nothing if they stay in place.
+  /// Returns the permutation to apply to the particles before step `step`, counted from 0; nothing if they
+  /// keep their order.
   std::optional<Permutation> particles(Index step, const FluidMesh& mesh, std::span<const Point> points);
 
   /// Sorts the tetrahedra.

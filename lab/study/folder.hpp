@@ -12,8 +12,8 @@
 
 namespace meshorder {
 
-/// Paths of the files in a study's folder. A study is resumed, and its report made again, from results.json
-/// and the files in `data`; all other files are made from these.
+/// Paths of the files in a study's folder. Results.json and the files in `data` suffice to resume a study and
+/// to make its report again; all other files are made from these.
 class StudyFolder {
  public:
   /// @param is_named  whether the user gave the folder, so that it may be a symbolic link
@@ -36,7 +36,7 @@ class StudyFolder {
   [[nodiscard]] std::filesystem::path mesh(std::string_view mesh) const {
     return data() / (std::string(mesh) + ".vtu");
   }
-  /// Returns the path of the rank of each vertex or cell in an order: old_to_new, a NumPy array.
+  /// Return the path of the NumPy array old_to_new of an order: the new number of each vertex, or cell.
   [[nodiscard]] std::filesystem::path vertex_order(std::string_view mesh, std::string_view ordering) const {
     return data() / (std::string(mesh) + "-" + std::string(ordering) + ".vertices.npy");
   }

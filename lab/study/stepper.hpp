@@ -26,7 +26,7 @@ struct StepperTask {
   std::string cell_order = {};       ///< the same for cells
   std::vector<int> processors = {};  ///< to bind the process to; empty: not bound
   // of a fluid, which has no mesh and no files of orders
-  std::string vertex_method = {};   ///< "auto": kept by a Reorderer; others: computed anew in each step
+  std::string vertex_method = {};   ///< "auto": a Reorderer decides when to order; others: see FluidOrdering
   std::string element_method = {};  ///< in each step
   double spacing = 0;               ///< of its particles, m
 };
@@ -77,8 +77,8 @@ StepperTimes stepper_times(const nlohmann::json& message);
 /// undoes it; then simulates and times turn after turn until the input ends. An error is the last answer.
 void serve_steps(std::istream& questions, std::ostream& answers);
 
-/// A simulation in a process of its own: every order has a fresh process, with its memory at the same
-/// addresses where the system allows it.
+/// A simulation in a new process. Where the system allows it, the memory of all such processes is at the same
+/// addresses.
 class Stepper {
  public:
   /// Starts `program`, which is meshorder, and waits until the body is ready. Throws Error with the process's

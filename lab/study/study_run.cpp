@@ -34,7 +34,7 @@ struct Subject {
   TurnPlan turns;
 };
 
-/// The part of a study's time from `from` to `to`.
+/// A part of a study's time, by its begin and end as shares of the whole.
 struct Share {
   double from = 0, to = 1;
 

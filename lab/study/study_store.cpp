@@ -28,7 +28,7 @@ void make_folders(const StudyFolder& folder) {
                      "name a folder for the results");
 }
 
-/// Returns the rank of a scenario in the paper; other scenarios come last.
+/// Returns the position of a scenario among the built-in ones; other scenarios come last.
 std::ptrdiff_t place_of(const ScenarioRecord& record) {
   const auto known = built_in_scenarios();
   const auto found = std::find_if(known.begin(), known.end(),

@@ -39,9 +39,9 @@ struct Round {
   int number = 0;  ///< index of the run, which begins with order `number` modulo the number of orders
 };
 
-/// Runs a round. `after_turn` is called with the share of the steps that are done; if it returns false the
-/// round stops and returns nothing. Throws Error if a process fails, or if the first order's body does not
-/// have that fingerprint.
+/// Runs a round. Calls `after_turn` with the share of the steps that are done; if that returns false, stops
+/// and returns nothing. Throws Error if a process fails, or if the first order's body does not have the
+/// fingerprint `fingerprint`.
 std::optional<std::vector<RunRecord>> run_round(const Round& round, const std::string& fingerprint,
                                                 const std::function<bool(double share)>& after_turn);
 

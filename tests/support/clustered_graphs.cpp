@@ -64,7 +64,7 @@ class Builder {
     join(a, b);
   }
 
-  /// The graph, in which edges join all other components to that of vertex 0.
+  /// Returns the graph, after joining all other components to the component of vertex 0 by edges.
   ClusteredGraph graph(std::string name) {
     std::vector<Index> root(size_);
     std::iota(root.begin(), root.end(), Index{0});

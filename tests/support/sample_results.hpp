@@ -20,8 +20,8 @@ struct SampleTimes {
 };
 
 /// A mesh of 300 vertices and 1000 edges with figures that are simple to check. Kernels have 100 accesses.
-/// Each order has `share` times the figures of the scrambled one: a mean span of 100; 80, 40 and 20 misses on
-/// this machine; 90, 60 and 50 on the paper's; 2 ms predicted and 1 ms measured.
+/// The scrambled order has a mean span of 100; 80, 40 and 20 misses on this machine and 90, 60 and 50 on the
+/// paper's; 2 ms predicted and 1 ms measured. Order k has `share[k]` times these figures.
 inline MeshRecord sample_mesh(const std::string& name, const std::vector<OrderingSpec>& orderings,
                               const std::vector<double>& share) {
   MeshRecord mesh;
@@ -40,7 +40,7 @@ inline MeshRecord sample_mesh(const std::string& name, const std::vector<Orderin
     order.element_method = orderings[i].elements;
     order.seconds = orderings[i].name == "original" ? 0 : 0.25 * static_cast<double>(i);
     order.span = {100 * share[i], static_cast<Index>(std::min<Offset>(299, of(299))), 6 * share[i]};
-    // bins of 50: edges that are not near are spread evenly
+    // `near` edges are in the first bin; all other edges are spread evenly over the other bins
     const Offset near = 1000 - std::min<Offset>(800, of(800));
     const Index far_bins = order.span.max / mesh.span_bin;
     order.span_histogram.assign(static_cast<std::size_t>(far_bins + 1), (1000 - near) / far_bins);

@@ -43,7 +43,8 @@ struct Box {
   [[nodiscard]] bool meets_segment(const Point& a, const Point& b) const;
 };
 
-/// A tree of boxes over items at rest. Each node halves its items along the longest axis of their centres.
+/// A tree of boxes over items that do not move. Each inner node halves its items along the longest axis of
+/// their centres.
 class BoxTree {
  public:
   /// Builds the tree over one box for each item. O(n log n).

@@ -65,8 +65,8 @@ class Bowl : public Obstacle {
     return scaled(1.0 / norm(across), across);
   }
 
-  /// If the segment from `a` to `p` crosses the middle, returns the point on a's side to which p must go
-  /// back.
+  /// If the segment from `a` to `p` crosses the middle, returns the surface point on the side of `a` to which
+  /// p must go back.
   [[nodiscard]] std::optional<SurfacePoint> back_through_wall(const Point& p, const Point& a) const {
     const std::optional<Point> crossing = first_crossing(a, p);
     if (!crossing) return std::nullopt;

@@ -173,7 +173,7 @@ class ClosedSurface : public Obstacle {
       const Triangle& corners = triangles_[t];
       const TrianglePoint here =
           nearest_on_triangle(x, points_[corners[0]], points_[corners[1]], points_[corners[2]]);
-      // of equally near triangles the first, independent of the path through the tree
+      // of equally near triangles takes the first, whatever the path through the tree
       if (here.squared_distance < best.squared_distance ||
           (here.squared_distance == best.squared_distance && t < triangle)) {
         best = here;
@@ -185,7 +185,7 @@ class ClosedSurface : public Obstacle {
     const Point way = minus(x, best.at);
     const double length = std::sqrt(best.squared_distance);
     const double sign = dot(way, normal) >= 0.0 ? 1.0 : -1.0;
-    // a length that is a rounding error gives no direction
+    // a length that may be a rounding error gives no direction
     if (best.on == TrianglePoint::On::face || length <= touching_) return {best.at, normal, sign * length};
     return {best.at, scaled(sign / length, way), sign * length};
   }

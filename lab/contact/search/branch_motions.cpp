@@ -49,7 +49,7 @@ struct Padded {
       result.parts[i] = hn::MulAdd(hn::Set(RowTag(), factor), other.parts[i], parts[i]);
     return result;
   }
-  /// Lower or raise each number to that of `other` if that is smaller or larger; NaN changes nothing.
+  /// Replace each number by that of `other` if the latter is smaller, or larger; NaN replaces nothing.
   HWY_INLINE void lower_to(const Padded& other) {
     MESHORDER_UNROLL
     for (Index i = 0; i < kParts; ++i)

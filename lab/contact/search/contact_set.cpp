@@ -19,8 +19,8 @@ constexpr double kWayOut = 0.5;
 /// does not put them inside.
 constexpr double kClearance = 0.1;
 
-/// Returns the gap to the body itself that a vertex must have at the end of a step which it begins with
-/// `gap`. The tolerance is added since halving a depth never reaches 0.
+/// Returns the gap to the body itself that a vertex must have at the end of a step if it had the gap `gap` at
+/// the start. Adds the tolerance, since halving a depth never reaches 0.
 double required_gap(double gap, double tolerance) {
   return std::min(kClearance * tolerance, (gap < 0.0 ? (1.0 - kWayOut) * gap : gap) + tolerance);
 }
@@ -51,7 +51,7 @@ bool ContactSet::update(std::span<const double> positions, std::span<const doubl
   const bool violates = std::any_of(found_.begin(), found_.end(), [&](const Contact& contact) {
     return depth(contact, positions) > tolerance;
   });
-  // keeps contacts of the body with itself that push, if no new contact was found for their vertex
+  // keeps a contact of the body with itself that pushes, if no new contact was found for its vertex
   std::vector<Contact> kept;
   for (std::size_t i = 0; i < std::min(earlier_.size(), forces.size()); ++i) {
     if (!earlier_[i].is_with_itself() || !(forces[i] > 0.0) ||

@@ -8,8 +8,9 @@
 
 namespace meshorder {
 
-/// The contacts of a body during a step. A vertex that was pushed out of the body itself lies on its surface
-/// and is not found again; its contact is kept while it has a force, so that it does not sink in again.
+/// The contacts of a body during a step. A vertex that was pushed out of the body itself lies on the body's
+/// surface and is not found again. Its contact is kept while the contact has a force, so that the vertex does
+/// not sink in again.
 class ContactSet {
  public:
   explicit ContactSet(ContactFinder finder) : finder_(std::move(finder)) {}
@@ -18,8 +19,8 @@ class ContactSet {
   /// earlier contacts are forgotten.
   void begin(std::span<const double> from);
 
-  /// Finds the contacts at these positions, in ContactFinder's order. `forces` are those of the contacts so
-  /// far; empty if nothing was solved since `begin`. Returns whether a vertex violates a new contact by more
+  /// Finds the contacts at these positions, in ContactFinder's order. `forces` are the forces of contacts(),
+  /// empty if nothing was solved since `begin`. Returns whether a vertex violates a new contact by more
   /// than `tolerance`, m. Contacts with the body itself keep a gap of a tenth of `tolerance`.
   bool update(std::span<const double> positions, std::span<const double> forces, double tolerance);
 

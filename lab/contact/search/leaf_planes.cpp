@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-/// Computes normal = (b − a) × (c − a); a, b, c are counterclockwise seen from the side that it points to.
+/// Computes normal = (b − a) × (c − a): a, b, c are counterclockwise seen from the side to which it points.
 template <class Value>
 HWY_INLINE void plane_through(const Value (&a)[3], const Value (&b)[3], const Value (&c)[3],
                               Value (&normal)[3]) {
@@ -33,7 +33,7 @@ HWY_INLINE void plane_through(const Value (&a)[3], const Value (&b)[3], const Va
 }
 
 void planes_of_leaf(TetrahedronLeaves& tetrahedra, Index leaf, const double* positions) {
-  // the other three corners of each face, so that they turn counterclockwise seen from inside
+  // corners of the face opposite each corner, counterclockwise seen from inside the tetrahedron
   constexpr int kInward[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
   // bound of rounding errors in a height: three products of a rounded normal and a rounded point
   constexpr double kPlaneRounding = 32 * 0x1p-24;
@@ -51,7 +51,7 @@ void planes_of_leaf(TetrahedronLeaves& tetrahedra, Index leaf, const double* pos
   }
   float* const planes = tetrahedra.planes.data() + Offset{16} * kLeaf * leaf;
   if (!(radius < kTooLarge)) {
-    // too large for floats: planes that keep nothing out
+    // the leaf is too large for floats: its planes exclude no point
     center = {};
     for (Index i = 0; i < 16 * kLeaf; ++i) planes[i] = i / kLeaf % 4 < 3 ? 0.0F : 1.0F;
     return;

@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-/// A point of a cluster, and the tetrahedra of a leaf that it may be inside of.
+/// A point of a cluster, and the tetrahedra of a leaf that may contain it.
 struct LeafHit {
   Index point = 0;
   Index leaf = 0;

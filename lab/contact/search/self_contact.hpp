@@ -21,8 +21,8 @@ class SelfContact {
   /// Appends a contact for each vertex of the surface inside a tetrahedron of other vertices, by ascending
   /// vertex. Of several tetrahedra, uses the first of those in which the vertex is deepest.
   ///
-  /// The way out is through the triangle of the surface that is nearest in the rest shape, among triangles
-  /// without the vertex: a contact with its own triangle would have no effect. The contact's normal is that
+  /// The way out is through the triangle of the surface that is nearest in the rest shape. Triangles of the
+  /// vertex itself are left out: a contact with these would have no effect. The contact's normal is that
   /// of the deformed triangle; a triangle without area makes no contact.
   void find(std::span<const double> positions, double friction, std::vector<Contact>& contacts);
 

@@ -53,7 +53,7 @@ Point weighted_sum(const std::array<Index, 4>& vertices, const std::array<double
   return sum;
 }
 
-/// Multiplies the rows of C by the vector that `place_of` returns for each contact.
+/// Multiplies each row of C by the vector that `place_of` returns for the row's contact.
 template <class PlaceOf>
 void multiply_places(const ContactRows& rows, PlaceOf place_of, std::span<double> result) {
   Index frictional = 0;

@@ -13,7 +13,7 @@ namespace meshorder {
 /// forces of contacts to forces on vertices.
 struct ContactRows {
   std::vector<Index> vertices;               ///< of all contacts, ascending
-  std::vector<std::array<Index, 4>> places;  ///< where each contact's vertices are in `vertices`; −1: absent
+  std::vector<std::array<Index, 4>> places;  ///< indices in `vertices` of each contact's vertices; −1: absent
   std::vector<std::array<double, 4>> weights;  ///< of each contact; 0 where absent
   std::vector<Point> directions;               ///< of each row
   std::vector<Index> frictional;  ///< contacts with friction; the k-th has row_of(k) and the next row

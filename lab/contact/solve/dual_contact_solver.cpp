@@ -14,9 +14,9 @@
 namespace meshorder {
 namespace {
 
-// softness as a share of the tolerance: small enough not to affect the result
+// softness (see ForceSolveOptions) as a share of the tolerance: too small to affect the result
 constexpr double kSoftness = 0.01;
-// after so many rounds of tangential bounds without progress the next round is the last
+// rounds of tangential bounds without progress, after which the next round is the last
 constexpr int kMaxFailures = 3;
 // An eighth of the multiplications is reserved for the last round. Each earlier round takes half of the
 // multiplications that are left.
@@ -194,7 +194,7 @@ class Solver final : public DualContactSolver<Real> {
  private:
   [[nodiscard]] const ContactRows& rows() const noexcept { return operator_.rows(); }
 
-  /// Computes g: the depth at x for normal rows; minus the displacement since `from` for the others.
+  /// Computes g: the depth at x for normal rows; minus the displacement since `from` for tangential rows.
   void take_depths(std::span<const Contact> contacts, std::span<const double> from, std::span<const Real> x) {
     depths_.resize(rows().size());
     multiply(rows(), x, std::span<double>(depths_));
@@ -251,7 +251,7 @@ class Solver final : public DualContactSolver<Real> {
       report.converged = residual <= options.tolerance;
       const int left = options_.max_iterations - report.iterations;
       if (report.converged || left <= 0) break;
-      // bounds and forces may increase each other without end: then the bounds are kept
+      // bounds and forces may increase each other without end: the last round then keeps the bounds
       if (residual >= best) ++failures;
       best = std::min(best, residual);
       last = last || failures >= kMaxFailures || left <= options_.max_iterations / kPartOfLast;

@@ -35,11 +35,11 @@ struct ContactSolveReport {
 /// A at the contacts' vertices (the lumped preconditioner of FETI: Farhat, Roux 1991). A call takes two more
 /// solves with the whole factor.
 ///
-/// `tolerance` bounds the norm of the projected gradient relative to that of the depths g > 0: about the
-/// error of the contacts' positions relative to the depth without forces. Where contacts contradict or repeat
-/// each other, each may stay as deep as tolerance / 100 of the distance by which its force moves its vertex.
-/// Then repeated contacts share the force. For contradicting contacts, the solution lies between them,
-/// `converged` is false, and `violation` is the remaining depth.
+/// `tolerance` bounds the norm of the projected gradient relative to the norm of the positive depths g: about
+/// the error of the contacts' positions relative to the depth without forces. Where contacts contradict or
+/// repeat each other, each may stay as deep as tolerance / 100 of the distance by which its force moves its
+/// vertex. Then repeated contacts share the force. For contradicting contacts, the solution lies between
+/// them, `converged` is false, and `violation` is the remaining depth.
 ///
 /// With friction the bounds of tangential forces follow from the last round's normal forces (Tresca's fixed
 /// point; Haslinger 1983), until the forces meet `tolerance` with the bounds that follow from them. If the
@@ -54,10 +54,10 @@ class DualContactSolver : public Polymorphic {
                                                  const CholeskyFactor<Real>& factor,
                                                  const ContactSolverOptions& options);
 
-  /// Replaces x, a first guess, by the solution; without contacts A⁻¹b exactly. Vectors have kPaddedStride
-  /// numbers for each vertex. The forces of the last call are the first guess for contacts with the same
-  /// vertex and obstacle, until `forget`. Throws InvalidArgument for contacts of vertices that do not exist
-  /// and numbers that are out of range. Always terminates; the report gives the remaining residual.
+  /// Replaces x, a first guess, by the solution; without contacts, the solution is A⁻¹b. Vectors have
+  /// kPaddedStride numbers for each vertex. The forces of the last call are the first guess for contacts with
+  /// the same vertex and obstacle, until `forget`. Throws InvalidArgument for contacts of vertices that do
+  /// not exist and numbers that are out of range. Always terminates; the report gives the remaining residual.
   virtual ContactSolveReport solve(std::span<const Contact> contacts, std::span<const Real> b,
                                    std::span<const double> from, std::span<Real> x) = 0;
 

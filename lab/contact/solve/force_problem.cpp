@@ -9,9 +9,10 @@
 namespace meshorder {
 namespace {
 
-// relative squared radius from which a force counts as on its disc's rim
+// a force counts as on the rim of its disc if (length / radius)² is at least this
 constexpr double kOnRim = 1.0 - 1e-9;
-// share of the residual to which a face is solved, since the face changes afterwards
+// share of the residual up to which a step solves for its face (the forces that it selects), which then
+// changes
 constexpr double kFaceTolerance = 0.1;
 // steps allowed without a new minimum of the energy
 constexpr int kPatience = 10;
@@ -177,8 +178,8 @@ class Minimiser {
     keep_free(z_);
   }
 
-  /// Computes step, approximately to the minimum of the energy on the face, by conjugate gradients, and
-  /// step_product = S step. The rim of a disc is curved, which adds to S for forces that move along it.
+  /// Computes the step to the approximate minimum of the energy on the face by conjugate gradients, and
+  /// step_product = S step. The rim of a disc is curved, which adds to S for forces that move along the rim.
   void solve_on_face() {
     std::fill(step_.begin(), step_.end(), 0.0);
     std::fill(step_product_.begin(), step_product_.end(), 0.0);

@@ -33,7 +33,7 @@ struct ForceSolveOptions {
   int max_multiplications = 0;  ///< by S
   /// A positive scale of each row of S, such as an estimate of its diagonal entry.
   std::span<const double> scale;
-  /// Adds this part of `scale` to the diagonal of S, so that the solution is unique even if S is singular.
+  /// The solver adds softness · scale to the diagonal of S, so that the solution is unique for a singular S.
   double softness = 0.0;
 };
 

@@ -15,8 +15,8 @@ struct ContactForce {
 };
 
 /// Forces of the contacts of one call, as a first guess for contacts of the next call with the same first
-/// vertex and obstacle. Contacts may come in any order; of several with the same vertex and obstacle, the
-/// last one counts.
+/// vertex and obstacle. Contacts may be in any order; of several contacts with the same vertex and
+/// obstacle, the last one counts.
 class RememberedForces {
  public:
   void remember(std::span<const Contact> contacts, std::span<const ContactForce> forces);

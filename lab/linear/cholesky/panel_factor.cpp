@@ -45,9 +45,9 @@ class Builder {
 
  private:
   const Ldl& ldl_;
-  std::vector<Index> number_;    ///< of each column of L: its number in the factor
-  std::vector<Index> columns_;   ///< of each of these numbers: the column of L
-  std::vector<Index> place_of_;  ///< of some columns: row in the panel, or slot in the task
+  std::vector<Index> number_;    ///< for each column of L, its number in the factor
+  std::vector<Index> columns_;   ///< for each of these numbers, the column of L
+  std::vector<Index> place_of_;  ///< for some columns: row in the panel, or slot in the task
   PanelFactor<Real> factor_;
   Offset rows_ = 0, values_ = 0;  ///< in all panels so far
   Index filled_ = 0;              ///< number of panels filled so far

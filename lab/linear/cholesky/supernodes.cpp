@@ -11,7 +11,7 @@ namespace {
 double cost_of(Index columns, Offset rows, const PanelCosts& costs) {
   const Index panels = panel_count(columns, costs.widest);
   const double width = columns;
-  // each panel has the columns of the later ones among its rows
+  // the rows of each panel include the columns of the later panels of its supernode
   const double rows_read = panels * static_cast<double>(rows) + (panels - 1) * width / 2;
   const double entries = width * static_cast<double>(rows) + width * (width - 1) / 2;
   return panels * costs.panel + rows_read * costs.row + entries;

@@ -49,7 +49,7 @@ struct TransposedProduct {
 };
 #endif
 
-// a block is prefetched so many blocks before its use, as in the product with a matrix
+// number of blocks by which prefetching runs ahead, as in the product with a matrix
 constexpr Offset kAhead = 128;
 
 void lower(const BlockFactor& factor, const double* r, double* z, Index begin, Index end) {

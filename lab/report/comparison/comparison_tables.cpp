@@ -116,7 +116,7 @@ Table both_kernels_table(const StudyResults& a, const StudyResults& b) {
   return table;
 }
 
-/// Returns the second cell of a table's row with this head; a dash if there is no such row.
+/// Returns the second cell of the row with this head; a dash if the table has no such row.
 TableCell cell_of(const Table& table, const std::string& head) {
   for (const auto& row : table.rows) {
     if (row.front().text == head) return row[1];

@@ -111,7 +111,7 @@ std::string level_tics(const Caches& caches) {
   return fmt::format("{}", fmt::join(tics, ", "));
 }
 
-/// Returns the panel of a kernel on a hierarchy.
+/// Returns gnuplot's commands for the panel of a kernel on a cache hierarchy.
 std::string panel(const StudyResults& results, const MeshRecord& mesh, std::size_t kernel,
                   std::size_t hierarchy) {
   const NamedCaches& caches = mesh.hierarchies[hierarchy];
@@ -143,7 +143,7 @@ std::string panel(const StudyResults& results, const MeshRecord& mesh, std::size
                     fmt::join(plots, ", \\\n  "));
 }
 
-/// Returns the key, a row above the panels.
+/// Returns gnuplot's commands for the key, a row above the panels.
 std::string key(const StudyResults& results, const MeshRecord& mesh) {
   std::vector<std::string> plots;
   for (const OrderingSpec& ordering : results.orderings) {

@@ -57,7 +57,7 @@ std::vector<Compared> compared(const StudyResults& results, const std::string& o
   return list;
 }
 
-/// Returns when the orders that save time pay off.
+/// Returns a sentence on when the orders that save time pay off.
 std::string payments(const StudyResults& results) {
   struct Payment {
     Index step;
@@ -93,7 +93,7 @@ std::string payments(const StudyResults& results) {
   return words + ".";
 }
 
-/// Returns what is shorter than in the paper's study, if anything is.
+/// Returns sentences on the runs that are shorter or fewer than in the paper's study; empty if none are.
 std::string caution(const StudyResults& results) {
   std::vector<std::string> shorter;
   for (const ScenarioRecord& scenario : results.scenarios) {
@@ -156,8 +156,8 @@ std::string same_motion(const StudyResults& results) {
       same, same.empty() ? "" : " ", in_words(parted));
 }
 
-/// Returns where an order's iterations differ from the reference's by 1 % or more: there the difference in
-/// time is not due to memory alone.
+/// Returns a sentence on the orders whose iterations differ from the reference's by 1 % or more: their
+/// difference in time is not due to memory alone.
 std::string other_work(const StudyResults& results) {
   std::vector<std::string> where;
   for (const ScenarioRecord& scenario : results.scenarios) {

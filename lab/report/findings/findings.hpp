@@ -11,7 +11,7 @@ namespace meshorder {
 
 /// Returns what the results show beyond the table of savings, in a few sentences to print below it: limits of
 /// the study, when orders pay off, whether all orders did the same work, and what spans, simulated caches and
-/// predictions show. Made from the numbers alone.
+/// predictions show. All follow from the numbers in `results`.
 std::vector<std::string> findings_of(const StudyResults& results);
 
 /// Returns findings on the meshes, as sentences: verdicts, edge spans, simulated misses of the last level on

@@ -35,7 +35,7 @@ void count_pairs(const MeshRecord& mesh, std::size_t kernel, PredictionError& er
   }
 }
 
-/// Returns the smallest mean span of each mesh, with the reference's.
+/// Returns a sentence on the smallest mean span of each mesh and that of the reference.
 std::string spans_in_words(const StudyResults& results) {
   std::vector<std::string> parts;
   for (const MeshRecord& mesh : results.meshes) {
@@ -101,7 +101,7 @@ std::string misses_in_words(const StudyResults& results) {
       title_of(results, results.reference), fmt::join(parts, "; "));
 }
 
-/// Returns how far the predicted speedups of all kernels together are off.
+/// Returns a sentence on the errors of the predicted speedups of all kernels.
 std::string predictions_in_words(const StudyResults& results) {
   std::vector<std::string> parts;
   int pairs = 0;
@@ -131,7 +131,7 @@ std::vector<std::string> mesh_findings(const StudyResults& results) {
   std::vector<std::string> findings;
   findings.push_back(spans_in_words(results));
   findings.push_back(misses_in_words(results));
-  // a study without scenarios shows these in the page's part on prediction
+  // a study without scenarios shows the predictions in the page's section on prediction
   if (!results.scenarios.empty()) findings.push_back(predictions_in_words(results));
   std::erase(findings, "");
   return findings;

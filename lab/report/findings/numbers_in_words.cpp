@@ -27,7 +27,7 @@ std::string with_digits_of(double number, double whole, int digits) {
   const double size = std::abs(whole);
   if (number == 0) return "0";
   if (size > 0 && size < 1e-4) return with_minus(fmt::format("{:.3g}", number));
-  // 9.9996 has as many digits before the point as 10, which it is rounded to
+  // counts the digits before the point of the rounded number: 9.9996 becomes 10
   const double rounded_up = size / (1 - 0.5 * std::pow(10, -digits));
   const int before = size > 0 ? static_cast<int>(std::floor(std::log10(rounded_up))) + 1 : 1;
   if (before >= digits) return with_minus(with_commas(std::llround(number)));

@@ -8,7 +8,8 @@ if(NOT MESHORDER_THREE_JS)
                       "or name the file by -DMESHORDER_THREE_JS=…")
 endif()
 
-# meshorder_read(<variable> <file>…): the files one after another; CMake runs again when one changes
+# meshorder_read(<variable> <file>…) sets the variable to the files one after another; CMake runs again when
+# one of them changes
 function(meshorder_read variable)
   set(all "")
   foreach(file ${ARGN})
