@@ -11,10 +11,10 @@ namespace meshorder::fuzz {
 
 /// The parts of two meshes that are compared.
 enum class Extent : std::uint8_t {
-  all,
+  all,               ///< points, cells, data, sets, ids and blocks
   points_and_cells,  ///< points may differ by 10⁻⁶ of their size, as some formats round them
   corners,           ///< the points of the cells' vertices
-  pairs,             ///< the number of cells with the same vertices, in any order
+  pairs,             ///< the vertices of each cell; vertices and cells may be in any order
 };
 
 /// Returns the first difference between two meshes in words; an empty text if the meshes are equal. Two

@@ -71,7 +71,6 @@ std::string in_words(const Point& vector) {
 
 double total_energy(const Balance& balance) { return balance.kinetic + balance.elastic + balance.potential; }
 
-/// Returns the number of elements.
 Index element_count(const Mesh& mesh) {
   return static_cast<Index>(std::count_if(mesh.cells.shapes.begin(), mesh.cells.shapes.end(),
                                           [](Shape shape) { return dimension(shape) == 3; }));

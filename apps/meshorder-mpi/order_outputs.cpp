@@ -23,7 +23,7 @@ namespace {
 using distributed::Communicator;
 using distributed::GridRows;
 
-/// Opens the files of the pieces at the root; returns their paths and their names in messages.
+/// Opens the files of the pieces at the root. Returns their temporary paths, and their names for messages.
 template <class Outputs>
 std::array<std::vector<std::string>, 2> opened(const Communicator& communicator,
                                                std::optional<Outputs>& outputs, Index parts) {

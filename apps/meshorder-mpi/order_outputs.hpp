@@ -63,7 +63,6 @@ class OrderOutputs {
   /// Writes a mesh that the root holds in its new order, and its maps.
   void write(const MeshToOrder& whole, const distributed::DistributedOrder& order, Notes& notes);
 
-  /// Puts all files in place.
   void commit(Notes& notes);
 
   /// Returns, at the root, the paths of all files but the output and the pieces.

@@ -55,7 +55,6 @@ std::vector<std::string> names_of(const CompareArguments& arguments) {
   return arguments.methods.empty() ? default_methods() : arguments.methods;
 }
 
-/// Returns the methods of the orders with these names.
 std::vector<MeshMethods> methods_of(const std::vector<std::string>& names) {
   std::vector<MeshMethods> methods;
   methods.reserve(names.size());

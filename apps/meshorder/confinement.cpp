@@ -143,7 +143,8 @@ class Reading {
     limit.rlim_cur = std::min({limit.rlim_cur, hard, seconds + used_seconds});
     work->seconds = static_cast<std::uint32_t>(std::min<rlim_t>(limit.rlim_cur, seconds));
     (void)::setrlimit(RLIMIT_CPU, &limit);
-    // with a damaged heap, a library may also wait for ever; time while the process is stopped does not count
+    // limits elapsed time, too: with a damaged heap, a library may wait for ever; SIGCONT begins the time
+    // anew
     seconds_to_wait = static_cast<int>(kWaiting * work->seconds);
     (void)std::signal(SIGCONT, wait_anew);
     wait_anew(SIGCONT);

@@ -99,7 +99,6 @@ double ratio_of_additions(std::span<const CountedKernel> additions) {
   return std::exp(sum / 3);
 }
 
-/// Returns whether there is nothing to count.
 bool is_empty(const GpuReport& report) { return report.additions.empty() && report.products.empty(); }
 
 /// Returns whether the first card takes longer to launch each kernel than to touch its sectors.

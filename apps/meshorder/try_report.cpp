@@ -140,7 +140,7 @@ std::size_t orders_that_fit(double runs) {
 std::optional<double> needed_budget(const TrialReport& report) {
   const std::optional<std::size_t> best = report.trials.best();
   if (!best || report.trials.verdict() != TrialVerdict::undecided) return std::nullopt;
-  constexpr double kFourfold = 4;  // the interval's width falls with the root of the number of runs
+  constexpr double kFourfold = 4;  // halves the interval: its width falls with the square root of the runs
   if (!std::isinf(report.trials.speedup(*best).high)) return rounded_up(kFourfold * report.budget_seconds);
   constexpr double kReserve = 1.25;
   auto others = static_cast<double>(report.left_out.size());

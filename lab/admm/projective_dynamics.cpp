@@ -30,7 +30,6 @@ const ProjectiveOptions& checked(const ProjectiveOptions& options, Index vertex_
   return options;
 }
 
-/// Returns Σ (a − b)².
 template <class Real>
 double squared_distance(std::span<const Real> a, std::span<const Real> b) {
   return sum_over_chunks<double>(static_cast<Index>(a.size()), 4 * kVertices, [&](Index begin, Index end) {
@@ -158,8 +157,8 @@ void ProjectiveDynamics<Real>::predict() {
   });
 }
 
-/// Computes both residuals of the iteration before the last local steps, which used its positions. Returns
-/// whether they are within the tolerance.
+/// Computes both residuals of the last iteration; local steps at its positions must have been taken since.
+/// Returns whether both are within the tolerance.
 template <class Real>
 bool ProjectiveDynamics<Real>::has_converged(const LocalResidual& local, StepReport& report) {
   const std::span<const Real> forces(right_side_.data(), x_.size());

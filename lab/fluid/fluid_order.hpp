@@ -36,7 +36,6 @@ class FluidOrder {
   /// keep their order.
   std::optional<Permutation> particles(Index step, const FluidMesh& mesh, std::span<const Point> points);
 
-  /// Sorts the tetrahedra.
   void sort(FluidMesh& mesh, std::span<const Point> points) const;
 
   [[nodiscard]] const FluidOrdering& ordering() const noexcept { return ordering_; }

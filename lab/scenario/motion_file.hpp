@@ -52,7 +52,6 @@ class SurfaceFile {
   /// Throws Error if the file cannot be written.
   explicit SurfaceFile(std::filesystem::path path);
 
-  /// Appends a frame.
   void add(std::span<const std::array<Index, 3>> triangles);
 
   /// Completes the file. Throws Error if the disk is full.

@@ -33,7 +33,7 @@ struct StudyPlan {
   int runs = 3;
   int threads = 1;
   std::optional<Index> steps;              ///< instead of the scenarios' own steps
-  std::optional<double> scenario_seconds;  ///< or about as many steps as fit in this time, at least 8
+  std::optional<double> scenario_seconds;  ///< or for one run in all orders; at least 8 steps
   double kernel_seconds = 12;              ///< time for running kernels on each mesh
   bool pin = true;                         ///< bind threads to processors
   OrderOptions ordering = {};

@@ -17,8 +17,8 @@ namespace meshorder {
 class StudyStore {
  public:
   /// Makes the folder and begins a study in it, or resumes the study in it. Throws Error if the folder cannot
-  /// be made, or if its study is of another machine, build, order, size or number of threads, or another
-  /// process is at work on it.
+  /// be made, if its study has another processor, build, mesh size, number of threads, reference or
+  /// orderings, or if another process works on it.
   StudyStore(const StudyPlan& plan, const StudyFolder& folder);
 
   [[nodiscard]] const StudyFolder& folder() const noexcept { return folder_; }

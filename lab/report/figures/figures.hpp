@@ -8,7 +8,6 @@
 
 namespace meshorder {
 
-/// A figure.
 struct Figure {
   std::string name;     ///< of its file, "spans-dragon"
   std::string section;  ///< its section of the page: "speedup", "spans", "caches", "phases" or "prediction"

@@ -46,7 +46,6 @@ struct PageMotion {
   std::vector<SurfaceView> surfaces = {};  ///< of a fluid, one for each frame, in the place of `surface`
 };
 
-/// The content of a page.
 struct Page {
   std::string title;
   StudyResults results;

@@ -53,7 +53,6 @@ struct Table {
 /// derived from them; its text is rounded.
 std::vector<Table> tables_of(const StudyResults& results);
 
-/// Returns the tables as Markdown.
 std::string to_markdown(const std::vector<Table>& tables);
 /// Returns the tables as CSV (RFC 4180), a line for each cell: table,row,column,text,value.
 std::string to_csv(const std::vector<Table>& tables);
