@@ -143,8 +143,7 @@ class Reading {
     limit.rlim_cur = std::min({limit.rlim_cur, hard, seconds + used_seconds});
     work->seconds = static_cast<std::uint32_t>(std::min<rlim_t>(limit.rlim_cur, seconds));
     (void)::setrlimit(RLIMIT_CPU, &limit);
-    // limits elapsed time, too: with a damaged heap, a library may wait for ever; SIGCONT begins the time
-    // anew
+    // limits elapsed time, too, since a library may hang on a damaged heap; SIGCONT restarts the clock
     seconds_to_wait = static_cast<int>(kWaiting * work->seconds);
     (void)std::signal(SIGCONT, wait_anew);
     wait_anew(SIGCONT);

@@ -41,7 +41,6 @@ struct GpuCard {
   double us_per_sector;
 };
 
-/// Returns the names of all cards.
 std::vector<std::string> gpu_card_names();
 
 /// Returns a card by its name; null for an empty or unknown name.
@@ -81,7 +80,6 @@ std::string to_string(const GpuReport& report);
 /// Prints the command that makes the new order, or the reasons to keep the old order.
 void print_next(const Console& console, const GpuReport& report, const std::string& mesh);
 
-/// Prints a table with a row for each kernel.
 void print_counts(const Console& console, const GpuReport& report);
 
 /// Returns the keys that docs/json.md lists.

@@ -31,7 +31,7 @@ struct ImplicitOptions : MotionOptions {
   double stiffness_damping = 0.0;  ///< β, s; K is that at the start of the step
   Mass mass = Mass::lumped;
   int newton_iterations = 1;       ///< 1: one linearised step (Baraff, Witkin 1998)
-  double newton_tolerance = 1e-6;  ///< bound of ‖g‖ / ‖g at rest‖, if more than one iteration is allowed
+  double newton_tolerance = 1e-6;  ///< bound of ‖g(v)‖ / ‖g(0)‖, if more than one iteration is allowed
   PreconditionerKind preconditioner = PreconditionerKind::jacobi;
   MatrixPrecision precision = MatrixPrecision::double_;
   SolveOptions solve;

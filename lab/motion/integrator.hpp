@@ -27,7 +27,7 @@ struct StepReport {
   // implicit
   int newton_iterations = 0;
   int cg_iterations = 0;
-  double newton_residual = 0.0;  ///< ‖g‖ / ‖g at rest‖ at the end, if more than one iteration is allowed
+  double newton_residual = 0.0;  ///< ‖g(v)‖ / ‖g(0)‖ at the end, if more than one iteration is allowed
   // ADMM
   int admm_iterations = 0;
   int contact_iterations = 0;  ///< of the solver of the global step with contacts

@@ -30,7 +30,6 @@ struct Simulation {
 /// Throws as the constructors of `Fluid` do.
 Simulation set_up_fluid(Scenario scenario, const OrderOptions& ordering = {});
 
-/// Returns the mesh of a fluid at the start.
 Mesh mesh_at_start(const Scenario& scenario);
 
 /// Throws Error, which names `file`, unless the mesh has volume cells.

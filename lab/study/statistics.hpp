@@ -38,9 +38,9 @@ Speedup speedup_of(const std::vector<RunRecord>& runs, const std::vector<RunReco
                    double order_seconds);
 
 /// Computes summaries, speedups and break-even steps of all scenarios from the runs. The orders' costs are
-/// those of the scenario's mesh; an order of unknown cost never breaks even. If an order and the reference
-/// differ in their number of runs, the first runs are compared. Scenarios without runs of the reference get
-/// summaries only.
+/// those of the scenario's mesh, or 0 for a fluid, whose steps contain them. An order of unknown cost never
+/// breaks even. If an order and the reference differ in their number of runs, the first runs are compared.
+/// Scenarios without runs of the reference get summaries only.
 void summarise(StudyResults& results);
 
 /// Returns the t for which a variable of Student's distribution lies between −t and t with the given

@@ -165,7 +165,7 @@ class Multigrid final : public Preconditioner {
       coarse_vectors_.emplace_back(last->rows());
       coarse_.push_back(make_level(view(*last), Coarsening::smoothed, modes));
       MultigridLevel<kRigidModes>& level = coarse_.back();
-      // the vector has grown, which may have moved the levels
+      // coarse_ has grown, which may have moved the level with `last`
       last = coarse_.size() > 1 ? &coarse_[coarse_.size() - 2].coarse : &finest_.coarse;
       update_level(view(*last), level);
       last->values = std::vector<double>();
@@ -192,7 +192,7 @@ class Multigrid final : public Preconditioner {
     if (!now.is_coarsest()) {
       restrict_residual(now, here.residual, right_side(level + 1));
       cycle(level + 1);
-      // one cycle is enough where the exact level comes next
+      // one cycle is enough on a level that the exact level follows
       if (level + 2 < coarse_.size()) cycle_again(level + 1);
       add_prolonged(now, correction(level + 1), here.x);
     }

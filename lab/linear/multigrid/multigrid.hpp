@@ -11,13 +11,13 @@ namespace meshorder {
 /// rigid-body modes as near-null space (Vaněk, Mandel, Brezina 1996).
 ///
 /// Vertices are gathered in aggregates by the strength of their blocks; each aggregate is a node of the next
-/// level with six unknowns, its rigid motions, and so on to a level that is solved exactly. The prolongation
-/// from the first coarse level is plain, so that the finest operator keeps its sparsity. The prolongations
-/// from coarser levels are smoothed, so that iterations hardly grow with the mesh. Coarse operators are
-/// Galerkin products. A cycle sweeps Gauss–Seidel over the blocks forwards, corrects from the next level
-/// (once from the first coarse level, twice from coarser levels: a W-cycle) and sweeps backwards. Matrices
-/// are kept as halves in float; coarse operators are computed in double. Internally the vertices are numbered
-/// breadth first, whatever their order in the matrix.
+/// level with six unknowns, its rigid motions, and so on to a level that is solved exactly or hardly
+/// coarsens. The prolongation from the first coarse level is plain, so that the finest operator keeps its
+/// sparsity. The prolongations from coarser levels are smoothed, so that iterations hardly grow with the
+/// mesh. Coarse operators are Galerkin products. A cycle sweeps Gauss–Seidel over the blocks forwards,
+/// corrects from the next level (once from the first coarse level and from the last levels, twice from the
+/// others: a W-cycle) and sweeps backwards. Matrices are kept as halves in float; coarse operators are computed in
+/// double. Internally the vertices are numbered breadth first, whatever their order in the matrix.
 ///
 /// The first `update` makes the aggregates from the matrix's values; later updates only recompute values, and
 /// take a third to a half of the time. A matrix that changes slowly does not need an update each time: with

@@ -54,8 +54,8 @@ std::vector<bool> joining_vertices(const BlockCsr& pattern, const std::vector<In
 
 IncompleteCholesky::IncompleteCholesky(const BlockCsr& pattern) : offsets_{0} {
   const Index n = pattern.size();
-  // chunks have enough rows for a thread's task; they are few, so that few vertices join them; their number
-  // is a power of two, which usual numbers of threads share evenly
+  // chunks have enough rows for a thread's task and are few, so that few vertices join them; their number is
+  // a power of two, so that usual numbers of threads share them evenly
   constexpr Index kRows = 8'000, kMaxChunks = 16;
   const auto count = static_cast<std::uint32_t>(std::clamp<Index>(n / kRows, 1, kMaxChunks));
   const std::vector<Index> chunks =
@@ -106,7 +106,7 @@ void IncompleteCholesky::update(const BlockCsr& matrix) {
   shift_ = 0.0;
   while (!factor(matrix, shift_)) {
     shift_ = std::max(kFirst, kFactor * shift_);
-    // the matrix is hardly positive definite
+    // the matrix is probably not positive definite
     if (shift_ > kMax) return keep_diagonal(matrix);
   }
 }
