@@ -34,7 +34,7 @@ struct CompareArguments : Common {
   std::vector<std::string> methods;  ///< empty: `default_methods()`
   OrderOptions ordering;
   double budget_seconds = TimingOptions{}.budget_seconds;
-  std::string caches;  ///< empty: those of the machine; large meshes are then not predicted
+  std::string caches;  ///< empty: this machine's caches, and no predictions for large meshes
   std::string machine;
   KernelSet kernels = KernelSet::plain;
   bool details = false;
@@ -62,8 +62,8 @@ std::vector<MeshMethods> methods_of(const std::vector<std::string>& names) {
   return methods;
 }
 
-/// Returns the methods for the rows of a matrix; its entries keep their places in the file. By default, these
-/// include methods that need points only if the matrix has coordinates.
+/// Returns the methods for the rows of a matrix, whose entries stay in the order of the file. By default,
+/// they include methods that need points only if the matrix has coordinates.
 std::vector<MeshMethods> methods_of_matrix(const Mesh& mesh, const CompareArguments& arguments) {
   std::vector<std::string> names = arguments.methods;
   for (const std::string& name : names) {

@@ -28,7 +28,7 @@ void print_comparison(const Console& console, const ComparisonReport& comparison
 /// Prints costs and spans, predicted misses, and the times of kernels for each number of threads.
 void print_comparison_details(Console& console, const ComparisonReport& comparison);
 
-/// Returns the keys that docs/json.md lists, without those of the file.
+/// Returns the keys that docs/json.md lists, except those that describe the file.
 nlohmann::ordered_json to_json(const ComparisonReport& comparison);
 
 }  // namespace meshorder::command

@@ -20,7 +20,7 @@ void Console::print_json(nlohmann::ordered_json result) const {
   if (!json_) return;
   result["version"] = MESHORDER_VERSION;
   result["notes"] = notes_;
-  // names may have any bytes; the escapes of `visible` are those of JSON
+  // names may have any bytes; `visible` escapes them as JSON does
   write_stdout(visible(result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace), "\n") +
                "\n");
 }

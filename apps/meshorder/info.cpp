@@ -45,7 +45,7 @@ namespace {
 struct InfoArguments : Common {
   std::string input;
   std::string points;
-  std::string caches;  ///< empty: those of the machine; large meshes are then not predicted
+  std::string caches;  ///< empty: this machine's caches, and no predictions for large meshes
   std::string machine;
   bool all_threads = false;
   bool measure = false;

@@ -14,7 +14,7 @@
 
 namespace meshorder::command {
 
-// The report of `order` on its result; the page in browser/ shows the same.
+// The report of `order` on its result; the page in browser/ shows this report as well.
 
 /// The edge spans of the vertices before and after reordering.
 struct SpanChange {

@@ -66,7 +66,7 @@ std::string received(int socket) {
   return message;
 }
 
-/// Asks the parent to put files in place; parameters and result are those of `put_in_place`.
+/// Asks the parent to put files in place; has the parameters and result of `put_in_place`.
 std::vector<std::string> ask(int socket, std::span<const FinishedFile> files, std::span<const FilePath> first,
                              std::span<const FilePath> removed) {
   std::string request;

@@ -33,7 +33,7 @@ namespace {
 constexpr std::array kSizes{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
 constexpr std::array kRanks{"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"};
 
-/// Returns the value of the first of these variables that is set; null if none of them is set.
+/// Returns the value of the first environment variable in `names` that is set; null if none is set.
 template <class Names>
 const char* first_set(const Names& names) {
   const char* value = nullptr;

@@ -45,8 +45,8 @@ std::string difference(std::string_view expected, std::string_view found, double
 std::vector<std::filesystem::path> printed_files(const std::filesystem::path& log);
 
 /// Returns the last line that begins with "error", in any case, after blanks, "*", "-", "#" or "["; empty if
-/// there is no such line. Searches the last 16 MiB of stderr, and then those of stdout. Cuts the line to 300
-/// bytes.
+/// there is no such line. Searches the last 16 MiB of stderr, then the last 16 MiB of stdout. Cuts the line
+/// to 300 bytes.
 std::string error_line(const std::filesystem::path& log);
 
 /// Returns the last line of a file that is not blank, cut to 300 bytes.

@@ -32,7 +32,7 @@ void refuse_unless_reader_left() {
 void occupy_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) >= 0) continue;
-    // the new descriptor is the lowest free number, which is that of the stream
+    // `open` returns the lowest free number, which is the number of the closed stream
     (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
 }

@@ -14,7 +14,7 @@ namespace meshorder::command {
 /// The program to run, and how its runs are judged; see docs/try.md.
 struct TrialOptions {
   std::vector<std::string> command;
-  std::vector<std::string> methods;  ///< empty: those of the subject
+  std::vector<std::string> methods;  ///< empty: TrialSubject::orders
   std::vector<std::string> with;     ///< files beside the mesh; empty: all
   std::string time = "cpu";
   std::string count;

@@ -121,7 +121,7 @@ void TrialFolder::place(const std::string& name, Companion& companion) const {
   fs::create_directories(here.parent_path(), ignored);
   fs::remove_all(here, ignored);
   if (companion.is_copied) {
-    fs::copy_file(companion.source, here, ignored);  // the program cannot read such a file either
+    fs::copy_file(companion.source, here, ignored);  // on failure, the program could not read the file either
   } else {
     fs::create_symlink(companion.source, here, ignored);
     companion.there = stamp_of(companion.source, true);

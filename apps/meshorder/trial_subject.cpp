@@ -28,8 +28,8 @@ constexpr std::array kOrdersOfMatrix{"auto", "rcm", "spectral-fronts"};
 constexpr const char* kRenumberMesh = "renumberMesh";
 constexpr std::array kOrdersOfCase{"auto", kRenumberMesh, "bfs", "fiedler", "hilbert"};
 
-/// Throws InvalidArgument for an unknown order: `method` is neither one of these methods nor `also`. Proposes
-/// the method that is spelt almost like it, or else `remedy`.
+/// Throws InvalidArgument for an unknown order: `method` is neither in `methods` nor equal to `also`.
+/// Proposes the method that is spelt almost like it, or else `remedy`.
 [[noreturn]] void refuse_order(const std::string& order, const std::string& method,
                                const std::vector<MethodInfo>& methods, const std::string& also,
                                const std::string& remedy) {

@@ -25,7 +25,7 @@ class TrialSubject : public Polymorphic {
   /// Returns the orders that are tried if the user names none.
   [[nodiscard]] virtual std::vector<std::string> orders() const = 0;
 
-  /// Throws InvalidArgument if no such order exists.
+  /// Throws InvalidArgument if no order has this name.
   virtual void check_order(const std::string& name) const = 0;
 
   /// Writes the subject in another order to the folder of order `number`, and completes `order`. Returns

@@ -66,7 +66,7 @@ bool is_faster(const TrialReport& report);
 /// Returns "faster", "slower", "tie" or "undecided".
 std::string verdict_name(const TrialReport& report);
 
-/// Returns the name of a program for messages; for python, bash and other interpreters, that of the script.
+/// Returns the name of a program for messages; for python, bash and other interpreters, the script's name.
 std::string program_name(const std::vector<std::string>& command);
 
 /// Returns "1.08–1.16", or "" if too few pairs were run.

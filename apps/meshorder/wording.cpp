@@ -69,8 +69,8 @@ Parts parts_of(const std::string& note) {
   return {{note.substr(0, begin + 1), note.substr(end + 1)}, note.substr(begin + 1, end - begin)};
 }
 
-/// Returns whether the note is on a set that Gmsh's reader made of periodic nodes. Another note, on pairs of
-/// periodic entities, reports the loss of these.
+/// Returns whether the note is on a set that Gmsh's reader made of periodic nodes. The loss of the pairs of
+/// periodic entities has a note of its own.
 bool is_on_periodic_nodes(const std::string& note) { return note.starts_with("the set 'gmsh:periodic "); }
 
 std::string likewise(const std::vector<std::string>& names) {

@@ -17,7 +17,7 @@ HWY_INLINE typename Lanes::Value squared_length(const typename Lanes::Value (&q)
 }
 
 /// Finds unit vectors along any q. Some q may be 0, or their squares too large or too small for a number.
-/// Where q = 0 the direction is that of the rest edge.
+/// For q = 0, takes the direction of the rest edge.
 template <class Lanes>
 HWY_NOINLINE void find_directions(const typename Lanes::Value (&q)[3],
                                   const typename Lanes::Number* rest_direction,

@@ -40,8 +40,8 @@ struct ProjectiveBody {
 /// global step, A x = M x̄ + h² Σ Dᵀw²(z − u) subject to the contacts. Its residuals are ‖W(Dx − z)‖ / ‖Wz‖
 /// and the change of the right-hand side relative to its elastic part.
 ///
-/// Contacts are those at the end of the step: after the last iteration the global step is repeated until no
-/// vertex has a new contact that it violates.
+/// A step respects the contacts at its end: after the last iteration, the global step is repeated until no
+/// vertex violates a new contact, at most eight times.
 template <class Real>
 class ProjectiveDynamics final : public Integrator {
  public:

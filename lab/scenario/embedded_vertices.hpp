@@ -24,8 +24,8 @@ struct EmbeddedVertex {
 /// belong to no volume cell, or only to flat volume cells, are not embedded. O(tetrahedra · nodes of a cell).
 std::vector<EmbeddedVertex> embed_vertices(const Mesh& mesh, const Simplices& simplices);
 
-/// Sets positions and velocities of embedded vertices from those of the corners. `rest` are the positions of
-/// all vertices at rest. O(embedded vertices).
+/// Computes positions and velocities of embedded vertices from the corners of their tetrahedra. `rest` are
+/// the positions of all vertices at rest. O(embedded vertices).
 void move_embedded(const std::vector<EmbeddedVertex>& embedded, std::span<const Point> rest,
                    MotionState& state);
 

@@ -69,9 +69,8 @@ struct MeshRecord {
   Offset edges = 0;     ///< of the vertex graph
   Index span_bin = 50;  ///< the paper's; wider for more than 200,000 vertices
   std::vector<NamedCaches> hierarchies;
-  std::vector<MeshOrderRecord>
-      orders;           ///< in the sequence of StudyResults::orderings; only those that were computed
-  std::string verdict;  ///< what reordering is worth, a sentence; may be empty
+  std::vector<MeshOrderRecord> orders;  ///< the computed orders, in the sequence of StudyResults::orderings
+  std::string verdict;                  ///< what reordering is worth, a sentence; may be empty
   /// Speedup, as a factor, of the kernel that gains most in the order that the verdict names; 0 if nothing is
   /// gained or if the gain is in doubt.
   double gain = 0;

@@ -47,7 +47,7 @@ std::vector<double> turns_of(const RunRecord& run, Index turn) {
   return turns;
 }
 
-/// Returns, for each position, the values of all lists there. The lists must have the same length.
+/// Returns, for each index, the values of all lists at this index. The lists must have the same length.
 std::vector<std::vector<double>> transposed(const std::vector<std::vector<double>>& lists) {
   std::vector<std::vector<double>> result(lists.front().size());
   for (const std::vector<double>& list : lists) {

@@ -24,10 +24,10 @@ TimeSummary summary_of(const std::vector<RunRecord>& runs);
 /// explain, which happens by chance in one case of twenty. The interval is then that of the R sums, with R −
 /// 1 degrees, which is wider.
 ///
-/// One run cannot separate noise from physics. Its interval is that of the ratio of the orders' seconds,
-/// assumed the same in all turns (Cochran 1977, Sampling Techniques, 6.3), with B − 1 degrees, which is
-/// wider. One turn of one run has no interval: `low` and `high` are then `percent`, and nothing is beyond the
-/// noise.
+/// One run cannot separate noise from physics. Its interval comes from the ratio of the orders' seconds,
+/// which is assumed to be the same in all turns (Cochran 1977, Sampling Techniques, 6.3), with B − 1 degrees,
+/// which is wider. One turn of one run has no interval: `low` and `high` are then `percent`, and nothing is
+/// beyond the noise.
 ///
 /// Percentages refer to the reference's mean seconds, whose own noise is of second order and neglected.
 /// `order_seconds` is the order's cost; the reference costs nothing. The break-even step is the first at

@@ -60,7 +60,7 @@ class JsonValue {
   }
 
   // ---- objects
-  /// Throws unless this is an object with no other keys than these.
+  /// Throws unless this is an object, all of whose keys are in `known`.
   void expect_keys(std::initializer_list<std::string_view> known) const;
   void expect_keys(std::span<const std::string_view> known) const;
   [[nodiscard]] bool has(std::string_view key) const { return value_->contains(key); }
@@ -105,7 +105,7 @@ class JsonValue {
   }
 
  private:
-  /// Returns a value of the same file.
+  /// Returns a value at another path in this file.
   [[nodiscard]] JsonValue at(const nlohmann::json& value, std::string path) const;
   [[nodiscard]] std::string kind() const;
 

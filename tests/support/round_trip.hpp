@@ -7,7 +7,7 @@
 
 namespace meshorder::test {
 
-/// The files of a mesh in memory, first the file to which the others belong, and the notes of the writer.
+/// The files of a mesh in memory, the main file first, and the notes of the writer.
 struct Written {
   std::vector<MemoryFile> files = {};
   Notes notes = {};

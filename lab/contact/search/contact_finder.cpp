@@ -72,7 +72,7 @@ struct ContactFinder::State {
   std::vector<Cluster> clusters;
   std::vector<Box> boxes;  ///< around clusters
 
-  /// Finds the obstacles near each cluster, over all of these positions of its vertices.
+  /// Finds the obstacles near each cluster, whose vertices are at any of the positions in `places`.
   void find_near(std::initializer_list<std::span<const double>> places, double reach) {
     for_each_chunk(index_size(surface), kInCluster, [&](Index c, Index begin, Index end) {
       clusters[c].near.clear();

@@ -52,8 +52,8 @@ struct TetrahedronLeaves {
   AlignedVector<Index> numbers;  ///< the caller's numbers of the tetrahedra; −1 after the last
   /// End e (the three lower ends, then the upper ends) of the box of leaf l of branch b at 16 · (6b + e) + l.
   AlignedVector<float> leaf_boxes;
-  AlignedVector<float> branch_boxes;           ///< the same of branches
-  std::vector<std::array<double, 3>> centers;  ///< of leaves; their planes are relative to these
+  AlignedVector<float> branch_boxes;           ///< boxes of the branches, in the same layout
+  std::vector<std::array<double, 3>> centers;  ///< of leaves; the planes of a leaf are relative to its center
   /// Planes of the faces, by update_planes: number q of face k of lane l of leaf i at 16 · (16i + 4k + q) +
   /// l. The four numbers are the inward normal and the offset, raised by a bound of rounding errors.
   AlignedVector<float> planes;

@@ -22,8 +22,8 @@ struct VertexInside {
 /// any earlier calls.
 class TetrahedronSearch {
  public:
-  /// Searches for `vertices`, ascending. Tetrahedra that have a negative volume at `points`, where the body
-  /// is at rest, get two corners swapped; those that are flat there contain nothing.
+  /// Searches for `vertices`, ascending. The body is at rest at `points`. Tetrahedra whose volume is negative
+  /// at rest get two corners swapped; tetrahedra that are flat at rest contain nothing.
   TetrahedronSearch(const Simplices& simplices, std::span<const Point> points,
                     std::span<const Index> vertices);
   ~TetrahedronSearch();

@@ -40,7 +40,7 @@ std::array<Point, 2> tangents(const Point& normal) {
   return {{{1.0 + sign * x * x * a, sign * b, -sign * x}, {b, sign + y * y * a, -y}}};
 }
 
-/// Returns Σ w x, where the numbers of a vertex are `stride` apart from those of the next.
+/// Returns Σ w x; `stride` is the distance in x from one vertex to the next.
 template <class Real>
 Point weighted_sum(const std::array<Index, 4>& vertices, const std::array<double, 4>& weights, const Real* x,
                    Index stride) {

@@ -27,8 +27,7 @@ struct ContactRows {
 /// numbers that are not finite.
 void check_contacts(std::span<const Contact> contacts, Index n);
 
-/// Throws InvalidArgument unless all of these vectors of a solve have kPaddedStride numbers for each of n
-/// vertices.
+/// Throws InvalidArgument unless the sizes of a solve's vectors b, `from` and x are kPaddedStride · n.
 void check_vectors(Index n, std::size_t b, std::size_t from, std::size_t x);
 
 /// Returns the rows of `contacts`, which must pass check_contacts. O(contacts · log contacts).

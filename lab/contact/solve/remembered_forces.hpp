@@ -22,7 +22,7 @@ class RememberedForces {
   void remember(std::span<const Contact> contacts, std::span<const ContactForce> forces);
   void forget() { entries_.clear(); }
 
-  /// Returns the force of the contact with the same vertex and obstacle; 0 if there was no such contact.
+  /// Returns the force of the contact with this contact's vertex and obstacle; 0 if there was none.
   /// O(log contacts).
   [[nodiscard]] ContactForce of(const Contact& contact) const;
 

@@ -67,8 +67,8 @@ SolveReport conjugate_gradients(const Matrix& matrix, const Preconditioner& prec
 
 /// Solves A x = b to the same residual as conjugate_gradients(matrix, …), but its iterations read `rounded`,
 /// the same matrix in single precision, BlockCsrOf<float> or HalfBlockCsrOf<float>. While the residual of A
-/// itself is too large, it solves for a correction in the same way (iterative refinement, Wilkinson 1963).
-/// Reports the iterations of all corrections. Measured in docs/evidence/benchmarks.md.
+/// itself is too large, the function solves for a correction in the same way (iterative refinement, Wilkinson
+/// 1963). Reports the iterations of all corrections. Measured in docs/evidence/benchmarks.md.
 template <class Rounded>
 SolveReport refined_conjugate_gradients(const BlockCsr& matrix, const Rounded& rounded,
                                         const Preconditioner& preconditioner, std::span<const double> b,

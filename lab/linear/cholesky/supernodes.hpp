@@ -30,7 +30,7 @@ struct Supernodes {
 /// column.
 constexpr Index panel_count(Index columns, Index widest) { return (columns + widest - 1) / widest; }
 
-/// Joins each column with those of its children in the elimination tree that make the solve cheaper that way.
+/// Joins each column with its children in the elimination tree, one by one, if that makes the solve cheaper.
 /// O(columns log columns).
 Supernodes find_supernodes(const Ldl& ldl, const PanelCosts& costs = {});
 

@@ -26,8 +26,8 @@ struct MultigridLevel {
 enum class Coarsening : std::uint8_t { plain, smoothed };
 
 /// Makes the level of a matrix and the transfer to the next level, with aggregates by the norms of the
-/// blocks. `modes` holds R×6 numbers a node, in the order of the view; on return it holds those of the coarse
-/// nodes. The level is the coarsest if coarsening would keep more than 80 % of the nodes.
+/// blocks. `modes` holds R×6 numbers a node, in the order of the view; on return it holds the modes of the
+/// coarse nodes. The level is the coarsest if coarsening would keep more than 80 % of the nodes.
 template <int R>
 MultigridLevel<R> make_level(const BlockView<R>& matrix, Coarsening coarsening, std::vector<double>& modes);
 

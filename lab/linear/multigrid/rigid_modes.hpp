@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// Vertices or nodes by aggregate: those of aggregate a are `members[starts[a]] … members[starts[a + 1] −
-/// 1]`, ascending.
+/// Vertices or nodes by aggregate: the members of aggregate a are `members[starts[a]] … members[starts[a + 1]
+/// − 1]`, ascending.
 struct Aggregates {
   std::vector<Index> starts{0};
   std::vector<Index> members;

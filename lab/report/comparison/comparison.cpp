@@ -70,7 +70,7 @@ void check_scenario(const Comparison& compare, const ScenarioRecord& a, const Sc
   compare.expect_same(of("by the method"), a.method, b.method);
   compare.expect_same(of("of the material"), a.material, b.material);
   if (a.fingerprint == b.fingerprint) return;
-  // the first half is the mesh's checksum, the second half that of the parameters
+  // the first half is the checksum of the mesh, the second half the checksum of the parameters
   constexpr std::size_t kHalf = 16;
   const bool mesh_differs = a.fingerprint.substr(0, kHalf) != b.fingerprint.substr(0, kHalf);
   compare.refuse(

@@ -30,8 +30,8 @@ std::string gnuplot_key(std::string_view text, int characters = 24);
 std::string gnuplot_tic(std::string_view text);
 
 /// How an order is drawn in all figures of a study: orders differ in shape, dashes and pattern as well as in
-/// colour. The colours are those of Okabe and Ito (2008, Color Universal Design), which can be told apart
-/// with every kind of colour vision.
+/// colour. Everyone can distinguish the colours, whatever their colour vision (Okabe and Ito 2008, Color
+/// Universal Design).
 struct OrderStyle {
   std::string_view colour;
   int filled = 0;  ///< gnuplot's point types

@@ -35,7 +35,7 @@ std::vector<float> coordinates(const Mesh& mesh, const std::vector<Index>& verti
   return result;
 }
 
-/// Returns fewer triangles; their corners are among those in `corners`.
+/// Returns fewer triangles, whose corners are among `corners`.
 std::vector<unsigned> simplified(const std::vector<unsigned>& corners, const std::vector<float>& places,
                                  std::size_t most_corners) {
   std::vector<unsigned> result(corners.size());
