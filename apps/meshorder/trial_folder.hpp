@@ -47,9 +47,9 @@ class TrialFolder {
   /// Returns whether two orders have the same files.
   [[nodiscard]] bool is_same(std::size_t a, std::size_t b) const;
 
-  /// Puts the files of an order in place.
+  /// Moves the files of an order into the program's directory.
   void begin_run(std::size_t order);
-  /// Removes the files of the order, restores the files beside the mesh and removes everything else. If
+  /// Moves the files of the order back, restores the files beside the mesh and removes everything else. If
   /// `kept` is not empty, first copies the program's output files to the folder `kept`. Throws
   /// InvalidArgument if the program changed its mesh or a linked file.
   void end_run(std::size_t order, const std::filesystem::path& kept = {});

@@ -12,7 +12,7 @@ namespace meshorder {
 
 /// The matrix A = M + h² Σ Dᵀw²D of ADMM's global step, the same for x, y and z, with its factor. Held
 /// vertices are not unknowns: their rows are those of the identity, and their influence on other vertices
-/// goes to the right-hand side.
+/// is part of the right-hand side.
 template <class Real>
 class GlobalSystem {
  public:

@@ -188,7 +188,7 @@ struct InvariantSteps {
     const Value pairs = Lanes::mul_add(a, Lanes::set(3.0) * a - (b + b) * p[0], b * b * p[1]);
     Value smallest = Lanes::min(Lanes::min(Lanes::min(sum, pairs), discriminant()),
                                 Lanes::min(determinant, Lanes::min(p[0], p[0] * p[1] - p[2])));
-    // a law with a shift has finite energies for inverted elements, and other minima there
+    // a law with a shift has finite energies, and further minima, for inverted elements
     if constexpr (Law::kShift) smallest = Lanes::min(smallest, Lanes::set(0.2) * p[2]);
     return Lanes::all_at_most(limit - smallest, 0.0);
   }

@@ -121,7 +121,7 @@ LocalLaw local_law_of(const SimplexMaterials& materials, LocalModel model, Offse
   return law;
 }
 
-/// Vertices this near to an obstacle are watched, as a share of the longest side of the body's box.
+/// ContactOptions::reach of a body, as a share of the longest side of its bounding box.
 constexpr double kReach = 0.02;
 
 void set_up_implicit(Simplices simplices, const MotionState& start, Simulation& simulation) {

@@ -134,7 +134,7 @@ class Stepping {
   std::optional<SurfaceFile> surfaces_;  ///< of a fluid
 };
 
-/// Returns a text as it is if it is UTF-8; else the numbers of its bytes, since a path may hold any bytes.
+/// Returns UTF-8 text unchanged, and the bytes of other text as numbers: a path may hold any bytes.
 nlohmann::json bytes_in_json(const std::string& text) {
   if (is_utf8(text)) return text;
   auto numbers = nlohmann::json::array();

@@ -45,7 +45,7 @@ namespace {
   ::_exit(127);
 }
 
-/// Returns a program and its arguments as `exec` takes them: pointers into `words`, then nullptr.
+/// Returns pointers to the words (a program and its arguments), then nullptr, as `exec` takes them.
 std::vector<char*> pointers_to(std::vector<std::string>& words) {
   std::vector<char*> argv;
   argv.reserve(words.size() + 1);

@@ -56,8 +56,8 @@ struct BrokenFile {
 /// and the file's name.
 void expect_broken(const std::string& name, const std::vector<BrokenFile>& files);
 
-/// Reads `content` cut at 400 to 800 places, or after each byte if it is shorter. EXPECTs an InputError, or
-/// the same points and cells as from the whole.
+/// Reads the first bytes of `content`: 400 to 800 lengths, or all lengths for shorter contents. EXPECTs an
+/// InputError, or the same points and cells as from the whole.
 void expect_truncation_is_noticed(const std::string& name, std::string_view content);
 
 /// Reads `path`, shuffles vertices and cells, writes the mesh with the same name in another folder, reads

@@ -27,7 +27,7 @@ class RestSurface {
   /// Returns the point of the surface nearest to x, among triangles without the corner `left_out`. Of several
   /// triangles that are equally near (to 1e-9), takes the one that faces x most, then the first: the
   /// numbering of triangles decides only between mirror images. The triangle is kNone if there are no
-  /// triangles. `within`, an upper bound of the distance, saves time.
+  /// triangles. `within` is an upper bound of the distance, m; a small one saves time.
   [[nodiscard]] Place nearest(const Point& x, Index left_out = kNone,
                               double within = std::numeric_limits<double>::infinity()) const;
 

@@ -260,7 +260,7 @@ class Minimiser {
   std::vector<double> step_, step_product_;  ///< S step
   std::vector<double> trial_, r_, z_, direction_, product_;
   double energy_ =
-      0.0;  ///< relative to the lowest so far: an absolute sum would lose the last decreases to rounding
+      0.0;  ///< minus the lowest energy so far; the total would lose the last decreases to rounding
   std::vector<double> best_, best_gradient_;
   ForceSolveReport report_;
 };

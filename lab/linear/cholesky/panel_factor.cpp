@@ -121,7 +121,7 @@ class Builder {
     }
   }
 
-  /// Returns the place of column j in row r below the panel; see PanelView.
+  /// Returns the index, among the panel's values, of column j in row r below the panel; see PanelView.
   static Offset place_below(const Panel& panel, Index r, Index j) {
     const Index group = r - r % Panel::kGroup;
     const Index in_group = std::min(Panel::kGroup, panel.row_count - group);

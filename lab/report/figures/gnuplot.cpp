@@ -33,7 +33,7 @@ std::string printable(std::string_view text) {
 constexpr std::ptrdiff_t kLongest = 24;   ///< characters of a text beside an axis
 constexpr std::ptrdiff_t kTicBytes = 49;  ///< bytes that gnuplot keeps of a tic's label
 
-/// Returns UTF-8 text of at most so many characters and bytes, with "…" in place of what is cut off.
+/// Cuts UTF-8 text to at most `characters` characters and `bytes` bytes; "…" replaces what is cut off.
 std::string shortened(std::string_view text, std::ptrdiff_t characters, std::ptrdiff_t bytes) {
   const auto begins_character = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; };
   if (std::count_if(text.begin(), text.end(), begins_character) <= characters && std::ssize(text) <= bytes) {
@@ -63,7 +63,7 @@ std::string with_own_ids_in(std::string tag, const std::string& prefix) {
   return tag;
 }
 
-/// Returns text with one blank in the place of each run of white space.
+/// Returns text with each run of white space replaced by one blank.
 std::string in_one_line(std::string_view text) {
   std::string result;
   for (const char c : text) {

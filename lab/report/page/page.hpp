@@ -43,7 +43,7 @@ struct PageMotion {
   std::vector<std::vector<Point>> frames;  ///< positions of the surface's vertices
   SurfaceView obstacle;                    ///< may be empty
   std::vector<Point> obstacle_points;
-  std::vector<SurfaceView> surfaces = {};  ///< of a fluid, one for each frame, in the place of `surface`
+  std::vector<SurfaceView> surfaces = {};  ///< of a fluid, one for each frame; `surface` is then unused
 };
 
 struct Page {
