@@ -29,8 +29,7 @@ class OutputDeputy {
   /// Returns the outputs that are written to directly, not replaced: devices and pipes.
   [[nodiscard]] const std::vector<std::filesystem::path>& through() const noexcept { return through_; }
 
-  /// Call it in the child: this process then writes in these scratch folders, and asks the parent to put its
-  /// files in place.
+  /// Call it in the child, which then writes in these scratch folders and asks the parent to move its files.
   void serve_this_process();
   /// Call it in the parent: does what the child asks, until the child ends.
   void serve_child();

@@ -22,8 +22,7 @@ struct FluidOptions : MotionOptions {
   double density = 1000;  ///< kg/m³
   double viscosity = 0;   ///< kinematic, m²/s
   double courant = 0.5;   ///< largest distance that a particle moves in a step, in spacings
-  double evening =
-      0.05;  ///< largest shift along each axis by which a step moves particles apart, in spacings
+  double evening = 0.05;  ///< largest shift of a particle along each axis that evens distances, in spacings
   double volume_gain = 0.2;  ///< share of lost volume that a step restores
   SolveOptions solve{.tolerance = 1e-5, .max_iterations = 2000};  ///< of the pressure
 };

@@ -16,8 +16,9 @@ namespace meshorder {
 /// sparsity. The prolongations from coarser levels are smoothed, so that iterations hardly grow with the
 /// mesh. Coarse operators are Galerkin products. A cycle sweeps Gauss–Seidel over the blocks forwards,
 /// corrects from the next level (once from the first coarse level and from the last levels, twice from the
-/// others: a W-cycle) and sweeps backwards. Matrices are kept as halves in float; coarse operators are computed in
-/// double. Internally the vertices are numbered breadth first, whatever their order in the matrix.
+/// others: a W-cycle) and sweeps backwards. Matrices are kept as halves in float; coarse operators are
+/// computed in double. Internally the vertices are numbered breadth first, whatever their order in the
+/// matrix.
 ///
 /// The first `update` makes the aggregates from the matrix's values; later updates only recompute values, and
 /// take a third to a half of the time. A matrix that changes slowly does not need an update each time: with
