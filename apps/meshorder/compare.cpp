@@ -126,16 +126,15 @@ ComparisonReport compared(const CompareArguments& arguments, const Mesh& mesh, P
 void run(const CompareArguments& arguments) {
   if (arguments.gpu) {
     throw CommandError(
-        "--gpu is in the command of the Python package only, which pip installs from the sources of "
-        "meshorder, in a virtual environment: venv/bin/pip install . 'cupy-cuda12x[ctk]'; then "
-        "venv/bin/meshorder compare --gpu",
+        "--gpu is in the command of the Python package only; install it from the sources of meshorder in a "
+        "virtual environment: venv/bin/pip install . 'cupy-cuda12x[ctk]'; then run venv/bin/meshorder "
+        "compare --gpu",
         2);
   }
   if (arguments.ordering.workload == Workload::gpu) {
     throw CommandError(
-        "--for gpu: the kernels run on this machine's processor; `meshorder info --gpu` counts for a "
-        "graphics "
-        "processor, and --gpu-layout padded counts the additions of each order",
+        "--for gpu: the kernels run on this machine's processor; `meshorder info --gpu` counts what kernels "
+        "cost on a graphics processor, and --gpu-layout padded counts the additions of each order",
         2);
   }
   Console console(arguments);

@@ -205,7 +205,8 @@ std::string to_string(const GpuReport& report) {
   std::string sentence = "there is a better order for a graphics processor";
   if (!changes.empty()) sentence += ": " + join(changes);
   if (is_bound_by_launches(report))
-    sentence += "; on so small a mesh kernels gain little by it: an H100 takes longer to launch them";
+    sentence +=
+        "; on so small a mesh, kernels gain little: an H100 takes longer to launch them than to run them";
   return sentence;
 }
 

@@ -23,10 +23,9 @@ constexpr std::array kEndings{
     Ending{SIGINT, "meshorder: stopped by SIGINT; unfinished outputs are removed\n"},
     Ending{SIGTERM, "meshorder: stopped by SIGTERM; unfinished outputs are removed\n"},
     Ending{SIGHUP, "meshorder: stopped by SIGHUP; unfinished outputs are removed\n"},
-    Ending{
-        SIGXFSZ,
-        "meshorder: stopped by SIGXFSZ: a file would exceed the limit on the size of files; raise the limit "
-        "(ulimit -f)\n"},
+    Ending{SIGXFSZ,
+           "meshorder: stopped by SIGXFSZ: a file would exceed the limit on its size; raise this limit "
+           "(ulimit -f)\n"},
     Ending{SIGPIPE, ""},
 };
 

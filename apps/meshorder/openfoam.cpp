@@ -115,8 +115,8 @@ class Case {
     });
     if (times.size() > 1) {
       notes.push_back(
-          fmt::format("the case has folders of {} times; renumberMesh moves the fields of one, at which the "
-                      "case starts: remove the others first; they would stay in the old order",
+          fmt::format("the case has folders of {} times; renumberMesh moves only the fields of the time at "
+                      "which the case starts: remove the other folders first, or they stay in the old order",
                       times.size()));
     }
     std::erase_if(times, [&](const std::string& name) {

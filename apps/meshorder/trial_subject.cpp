@@ -166,7 +166,7 @@ class TriedCase final : public TrialSubject {
       renumber_mesh_ = find_program(kRenumberMesh);
     } catch (const InvalidArgument&) {
       throw InvalidArgument(
-          "renumberMesh, which moves the cells, is not there: run OpenFOAM's etc/bashrc first");
+          "renumberMesh, which moves the cells, was not found: run OpenFOAM's etc/bashrc first");
     }
   }
 
@@ -178,8 +178,9 @@ class TriedCase final : public TrialSubject {
   [[nodiscard]] TrialFolder folder(const std::vector<std::string>& with) const override {
     if (is_decomposed(path_) && (with.empty() || std::ranges::any_of(with, is_of_process))) {
       throw InputError(
-          path_, "it has a mesh in constant and others in processor folders; only the first can be tried",
-          "if the program reads that one, name the folders that it needs, as in --with 0,constant,system");
+          path_,
+          "it has a mesh in constant and others in processor folders; only the mesh in constant can be tried",
+          "if the program reads this mesh, name the folders that it needs, as in --with 0,constant,system");
     }
     return {path_, "", with};
   }

@@ -265,7 +265,7 @@ const Format& format_of_file(const FilePath& path) {
 const Format& output_format_of(const std::filesystem::path& path) {
   const Format& format = format_of(path);
   if (lower_case(without_gz(path).extension().string()) == ".pvtu") {
-    throw InputError(path.string(), "lists pieces, which one mesh is not",
+    throw InputError(path.string(), "lists pieces; one mesh cannot be written as such a list",
                      "write a .vtu file, or pieces by `mpirun -n 4 meshorder order MESH --pieces FOLDER`");
   }
   return format;

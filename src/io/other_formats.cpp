@@ -32,7 +32,7 @@ constexpr std::array kOtherFormats{
                 "mesh it first, for example with gmsh IN -3 -o OUT.msh"},
     OtherFormat{".geo", "is geometry without a mesh",
                 "mesh it first, for example with gmsh IN -3 -o OUT.msh"},
-    OtherFormat{".xml", "may be a mesh of the FEniCS of old", kByMeshio},
+    OtherFormat{".xml", "may be a mesh of legacy FEniCS", kByMeshio},
 };
 
 }  // namespace

@@ -69,7 +69,7 @@ struct DeckMetadata final : FormatMetadata {
 inline void require_mesh(const DeckContents& deck, const std::string& file, const std::string& no_nodes,
                          const std::string& no_elements, const std::string& others,
                          const std::string& remedy_of_others = "nothing can be reordered") {
-  const std::string no_mesh = "it may be cut short, or its mesh be in another file";
+  const std::string no_mesh = "the file may be cut short, or its mesh may be in another file";
   if (deck.nodes.size() == 0) throw InputError(file, no_nodes, no_mesh);
   if (deck.elements.size() > 0) return;
   if (others.empty()) throw InputError(file, no_elements, no_mesh);

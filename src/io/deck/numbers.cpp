@@ -153,7 +153,7 @@ bool keep_numbers(const DeckNumbers& numbers, std::int64_t largest, const std::v
   require_valid(numbers.elements, "cell", largest, path);
   if (unknown.empty()) return false;
   throw InputError(path.string(),
-                   "its numbers cannot change, since these may refer to them: " + join(unknown),
+                   "its numbers must stay, because other data may refer to them: " + join(unknown),
                    "keep them: --ids keep");
 }
 

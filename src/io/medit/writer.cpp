@@ -274,7 +274,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   note_missing_labels(from.cell_labels, "cells", notes);
   note_ids_unsupported(mesh, "Medit", notes);
   if (!from.own) note_metadata_unsupported(mesh, "Medit", notes);
-  note_solutions(path, "does not fit the mesh that was just written beside it", notes);
+  note_solutions(path, "does not fit the new mesh", notes);
 }
 
 }  // namespace meshorder::medit

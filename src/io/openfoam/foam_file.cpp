@@ -129,7 +129,7 @@ bool FoamFile::at_end() {
 void FoamFile::read_header() {
   if (token() != "FoamFile" || !take('{')) {
     position_ = 0;
-    fail("is not an OpenFOAM file", "these begin with the header FoamFile { … }");
+    fail("is not an OpenFOAM file", "an OpenFOAM file begins with the header FoamFile { … }");
   }
   int depth = 1;  // depth of nested braces
   while (depth > 0) {

@@ -142,7 +142,7 @@ void read_items(Scanner& in, File file, bool marked, ReadContext& to, const Read
     for (; !in.at_line_end(); ++own) (void)in.word("a column");
     if (further < 0) further = own;
     if (own > further) fail_columns(in);
-    if (own < further) in.fail("the line has fewer columns than the first one", "add those that lack");
+    if (own < further) in.fail("the line has fewer columns than the first one", "add the missing columns");
   }
   if (further <= 0) return;
   to.notes.push_back(

@@ -342,7 +342,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
     note_metadata_unsupported(mesh, "TetGen", notes);
   }
   for (const EntitySet& set : mesh.sets) note_set_unsupported(set, "TetGen", notes);
-  note_other_companions(path, "does not fit the mesh that was just written beside it", notes);
+  note_other_companions(path, "does not fit the new mesh", notes);
 }
 
 std::int64_t first_number_of(const Mesh& mesh, Association /*of*/) {
