@@ -45,7 +45,7 @@ enum {
   MO_UNAVAILABLE = 4,      /**< a method that this build lacks */
   MO_STOPPED = 5,          /**< the progress callback returned non-zero */
   MO_IO = 6,               /**< the operating system refused an operation on a file */
-  MO_INTERNAL = 7,         /**< a failure of meshorder, of a library that it uses, or of a user's method */
+  MO_INTERNAL = 7,         /**< meshorder, a library that it uses, or a user's method failed */
   MO_OUT_OF_MEMORY = 8
 };
 
@@ -93,13 +93,13 @@ typedef struct mo_options {
   int32_t symmetrize;   /**< non-zero: take the pattern of A + A^T; default 0: refuse asymmetric input */
   mo_in start;          /**< an estimate of the Fiedler vector: n numbers, or none */
   mo_in groups;         /**< group of each vertex, or none; groups stay together and ascend */
-  /** Called now and then on the calling thread, with the stage in words and the fraction done, 0 ... 1, or -1
-   * if unknown. A non-zero result stops the call. */
+  /** meshorder calls it now and then on the calling thread, with the name of the stage and the fraction done:
+   * 0 ... 1, or -1 if unknown. A non-zero result stops the call. */
   int32_t (*progress)(void* user, const char* stage, double fraction);
   void* user;             /**< passed to `progress` */
   int32_t max_iterations; /**< of the eigensolver, >= 1; default 500 */
   int32_t reserved;       /**< 0 */
-  mo_in cell_groups;      /**< group of each cell, or none; used within each block and dimension */
+  mo_in cell_groups;      /**< group of each cell, or none; cells of one dimension are grouped */
 } mo_options;
 
 /** Report on a call. Set `struct_size` to sizeof(mo_result) before the call. Pass null for no report. */
@@ -127,7 +127,7 @@ MO_API void mo_options_init(mo_options* options, size_t struct_size);
  * Orders the vertices of an undirected graph or the rows of a matrix, given in compressed sparse rows.
  *
  * @param offsets     n + 1, ascending, the first is `base`
- * @param neighbours  offsets[n] - base vertex numbers, from `base` on; loops and repeats are ignored
+ * @param neighbours  (offsets[n] - base) vertex numbers, from `base` on; loops and repeats are ignored
  * @param weights     one positive number for each neighbour, or null; fiedler uses them
  * @param points      dimension * n coordinates x y z x y z ... for geometric methods, or null
  * @param dimension   1 to 3; not used without points
@@ -187,7 +187,7 @@ enum {
   MO_REPAIR_NONE = 0,    /**< nothing moves */
   MO_REPAIR_CARRIED = 1, /**< vertices that stayed keep their order, new ones come next to their neighbours */
   MO_REPAIR_WARM = 2,    /**< computed again, from the last Fiedler vector */
-  MO_REPAIR_FRESH = 3    /**< computed again */
+  MO_REPAIR_FRESH = 3    /**< computed again from the start */
 };
 
 /**
@@ -213,7 +213,7 @@ MO_API void mo_reorderer_destroy(mo_reorderer* reorderer);
  *
  * @param reorderer   made by `mo_reorderer_create`
  * @param offsets     n + 1, ascending, the first is the base of the options; null if there are only points
- * @param neighbours  offsets[n] - base numbers from the base on, or null
+ * @param neighbours  (offsets[n] - base) vertex numbers, from the base on; or null
  * @param points      dimension * n coordinates, or null
  * @param dimension   1 to 3; not used without points
  * @param previous    place of each vertex after the last update, from the base on, no place twice; base - 1
@@ -235,7 +235,7 @@ MO_API mo_status mo_reorderer_observe(mo_reorderer* reorderer, double step_secon
  * isolated vertices have 0.
  *
  * @param offsets     n + 1, ascending, the first is `base`
- * @param neighbours  offsets[n] - base vertex numbers, from `base` on; loops and repeats are ignored
+ * @param neighbours  (offsets[n] - base) vertex numbers, from `base` on; loops and repeats are ignored
  * @param weights     one positive number for each neighbour, or null
  * @param options     or null
  * @param values      n numbers of type MO_DOUBLE or MO_FLOAT
@@ -260,10 +260,10 @@ MO_API mo_status mo_move(const mo_in* new_to_old, int32_t base, const void* from
  * Layouts for graphics processors, where many threads work on cells at once. Order the mesh first: layouts
  * keep the order of cells and vertices.
  *
- * All functions take cells as `mo_order_mesh` does, `vertex_count` >= 0, and options or null, of which they
- * use `base`, `threads`, `progress` and `user`. Edges are cells with two vertices. Numbers of cells and
- * vertices and offsets count from the base on; `local` and `corners` count from 0. The library makes the
- * structures and their arrays, which are valid until the call that destroys them; do not write to them.
+ * All functions take cells as `mo_order_mesh` does, `vertex_count` >= 0, and options or null. Of the options
+ * they use `base`, `threads`, `progress` and `user`. Edges are cells with two vertices. Cell numbers, vertex
+ * numbers and offsets start at the base; `local` and `corners` start at 0. The library owns the structures
+ * and their arrays; they are valid until the call that destroys them. Do not write to them.
  */
 
 /** Cells in patches of `size`, one patch for each block of threads. The block loads the patch's vertices into
@@ -363,10 +363,10 @@ MO_API mo_status mo_sort_corners(const mo_in* cell_offsets, const mo_in* cell_ve
 /** Cost of a kernel on a graphics processor. Set `struct_size` to sizeof(mo_gpu_counts) before the call. */
 typedef struct mo_gpu_counts {
   size_t struct_size;
-  int64_t requests;   /**< additions, or loads and stores; the 32 threads of a warp make one at once */
-  int64_t sectors;    /**< sectors of 32 bytes that they touch; t times if t threads add to one number */
-  int64_t floor;      /**< value of `sectors` if each warp's numbers were all different and side by side */
-  int64_t dram_bytes; /**< bytes read from memory, if the cache is filled again and again */
+  int64_t requests; /**< additions, or loads and stores; one request serves the 32 threads of a warp */
+  int64_t sectors; /**< 32-byte sectors that requests touch; counted t times if t threads add to one number */
+  int64_t floor;   /**< value of `sectors` if each warp's numbers were all different and side by side */
+  int64_t dram_bytes; /**< bytes read from memory through a cache of `cache_bytes` */
   int64_t dram_floor; /**< `dram_bytes` if each number were read once */
 } mo_gpu_counts;
 
@@ -394,7 +394,7 @@ MO_API mo_status mo_gpu_cost(const mo_in* cell_offsets, const mo_in* cell_vertic
  * entry for each neighbour, and a diagonal.
  *
  * @param offsets      n + 1, ascending, the first is the base
- * @param neighbours   offsets[n] - base numbers from the base on; symmetric
+ * @param neighbours   (offsets[n] - base) vertex numbers, from the base on; a symmetric pattern
  * @param lanes        threads of a row: 1, 2, 4, 8, 16 or 32
  * @param cache_bytes  size of the last cache; 0: 50 MiB
  * @param options      or null
@@ -424,7 +424,7 @@ MO_API const char* mo_method_name(int32_t k);
 typedef int32_t (*mo_method)(void* user, int64_t n, const int64_t* offsets, const int32_t* neighbours,
                              const double* xyz, int32_t* new_to_old);
 
-/** Type of `mo_register`, which a plug-in receives as its argument. */
+/** Type of `mo_register`; meshorder passes that function to a plug-in. */
 typedef mo_status (*mo_register_fn)(const char* name, const char* description, int32_t needs_points,
                                     mo_method method, void* user);
 

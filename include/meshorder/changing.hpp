@@ -28,7 +28,7 @@ enum class Repair : std::uint8_t {
   none,     ///< nothing moves
   carried,  ///< vertices that stayed keep their order, new ones come next to their neighbours
   warm,     ///< computed again from the last Fiedler vector, to 30 times the tolerance
-  fresh,    ///< computed again
+  fresh,    ///< computed again from the start
 };
 
 /// Returns "none", "carried", "warm" or "fresh". Valid for the life of the program.
@@ -49,14 +49,14 @@ struct ReordererOptions {
 
 /// Result of `Reorderer::update`.
 struct Update {
-  Permutation permutation;  ///< from the present places of the rows; moves nothing under `Repair::none`
+  Permutation permutation;  ///< of the rows, from their present places; the identity under `Repair::none`
   Repair repair = Repair::none;
   std::string reason = {};  ///< why a new order was computed or not, a sentence
   /// Distance of neighbours in the order: the mean of ⌊log₂ |i − j|⌋ over the edges of every 16th vertex. For
   /// points alone, the mean of log₂ (1 + distance of a point from its place on the curve) over a sample.
   /// Compare it only with values of the same method.
   double span_log2 = 0;
-  double fresh_span_log2 = 0;  ///< `span_log2` of the last order that was computed anew
+  double fresh_span_log2 = 0;  ///< `span_log2` right after the last search for a new order
   Index added = 0;             ///< vertices that are new
   Index removed = 0;           ///< vertices that are gone
   double seconds = 0;          ///< wall-clock time of the call
@@ -112,8 +112,8 @@ class MESHORDER_API Reorderer {
   Update update(const PointsView& points, const IndexView& previous = {});
 
   /// Reports the duration of the step after the last update. From the fifth report on, a new order is
-  /// computed once slower steps have lost more time than it costs: √(2 cost / slope) steps after the last new
-  /// order, where `slope` is the time that each step adds to the duration of a step. Optional.
+  /// computed once slower steps have lost more time than the order costs: √(2 cost / slope) steps after the
+  /// last new order, where `slope` is the growth of the duration from one step to the next. Optional.
   ///
   /// @param step_seconds  ≥ 0 and finite
   /// @throws InvalidArgument otherwise

@@ -52,7 +52,7 @@ struct PartOrder {
   /// First new number of each part, then the end of the last part; the same on all ranks. Vertices that no
   /// element uses have the numbers from that end on.
   std::vector<std::int64_t> part_starts;
-  /// Part of each element: that of its vertex with the largest new number.
+  /// Part of each element: the part of the element's vertex with the largest new number.
   std::vector<std::int64_t> cell_parts;
 };
 
@@ -82,7 +82,7 @@ inline mo_mpi_options to_c(const RankOptions& options) {
           .reserved = 0};
 }
 
-/// Returns the count as a size, 0 for a negative one: the library refuses negative counts on all ranks.
+/// Returns the count, or 0 if it is negative; the library then throws on all ranks.
 inline std::size_t room_for(std::int64_t count) { return count > 0 ? static_cast<std::size_t>(count) : 0; }
 
 inline void throw_unless_ok(mo_status status) {

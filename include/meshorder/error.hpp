@@ -34,7 +34,7 @@ class MESHORDER_API Error : public std::runtime_error {
   /// @param message  one sentence: the fault, its place and a remedy
   Error(Code code, const std::string& message) : std::runtime_error(message), code_(code) {}
 
-  /// Returns the kind of the failure; one kind for each derived class.
+  /// Returns the kind of the failure. Each derived class has its own kind.
   [[nodiscard]] Code code() const noexcept { return code_; }
 
  private:

@@ -54,8 +54,8 @@ struct ReadOptions {
 
 /// Reads a mesh from a file.
 ///
-/// Refuses files that do not belong together, such as an interrupted writer leaves, if the format marks them
-/// (TetGen, XDMF). Nothing is written.
+/// An interrupted writer can leave files that do not belong together. They are refused if the format marks
+/// files of one mesh (TetGen, XDMF). Nothing is written.
 ///
 /// @param path     the file; any of them if the format has several
 /// @param options  see `ReadOptions`
@@ -145,7 +145,7 @@ struct MemoryFile {
   std::string bytes;
 };
 
-/// The files that `write_mesh` would have made, and what it would have returned.
+/// The files that `write_mesh` would write, and the permutation that it would return.
 struct MemoryFiles {
   std::vector<MemoryFile> files;  ///< one, or for TetGen several
   Permutation cells;

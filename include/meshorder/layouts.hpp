@@ -124,14 +124,14 @@ inline constexpr std::size_t kGpuCacheBytes = std::size_t{50} << 20;
 
 /// Cost of a kernel on a graphics processor.
 struct GpuCost {
-  Offset requests = 0;  ///< additions, or loads and stores; the 32 threads of a warp make one at once
-  /// Sectors of 32 bytes that these requests touch. A sector of additions counts t times, where t is the
-  /// largest number of threads of the warp that add to the same number in it: they wait for each other.
+  Offset requests = 0;  ///< additions, or loads and stores; one request serves the 32 threads of a warp
+  /// 32-byte sectors that these requests touch. If threads of a warp add to the same number in a sector, they
+  /// wait for each other: the sector counts t times, where t is the largest number of such threads.
   Offset sectors = 0;
   /// Value of `sectors` if the numbers that each warp touches at once were all different and side by side;
   /// for patches, also if no vertex were in two patches.
   Offset floor = 0;
-  Offset dram_bytes = 0;  ///< bytes read from memory, if the cache is filled again and again
+  Offset dram_bytes = 0;  ///< bytes read from memory through a cache of `cache_bytes`
   Offset dram_floor = 0;  ///< `dram_bytes` if each number were read once
 
   bool operator==(const GpuCost&) const = default;
@@ -141,8 +141,8 @@ struct GpuCost {
 /// Of two orders of the same cells, the one with fewer sectors is faster there. The counters of an NVIDIA
 /// H100 agree within 1.2 % for tetrahedra; docs/gpu.md has all figures.
 ///
-/// `sectors` counts those of atomic additions; for `gathered`, those that the first pass stores and the
-/// second pass loads. `dram_bytes` counts two things:
+/// `sectors` counts the sectors of atomic additions; for `gathered`, the sectors that the first pass stores
+/// and the second pass loads. `dram_bytes` counts two things:
 /// - the cells' vertex numbers, of 4 bytes each, or 2 bytes within patches;
 /// - the values of each vertex in two arrays: one array is read, the other is added to.
 ///
@@ -154,8 +154,8 @@ struct GpuCost {
 /// @param cache_bytes   size of the last cache, ≥ 1
 /// @param run           threads
 /// @throws InvalidArgument for faulty cells, cells of several types and a cache of 0 bytes; for the layouts
-///                         `patches` and `gathered`, also as the functions of these names; TooLarge as
-///                         `patches`
+///                         `patches` and `gathered`, also as the functions `patches` and `gather_lists`;
+///                         TooLarge as `patches`
 /// @note O(Σ vertices of a cell), on all threads except for `dram_bytes` and `gathered`.
 [[nodiscard]] MESHORDER_API GpuCost gpu_cost(const CellsView& cells, std::size_t vertex_count,
                                              GpuLayout layout, std::size_t cache_bytes = kGpuCacheBytes,
@@ -164,8 +164,8 @@ struct GpuCost {
 /// Counts what the product of a sparse matrix with a vector costs on a graphics processor. The matrix has an
 /// entry for each neighbour in the graph, and a diagonal, in compressed sparse rows with numbers of 4 bytes.
 ///
-/// `sectors` and `dram_bytes` are those of loads: of offsets, columns, values and the vector. Loops are
-/// unrolled as by NVIDIA's compiler. The counters of an NVIDIA H100 had the same numbers (docs/gpu.md).
+/// `sectors` and `dram_bytes` count the loads of offsets, columns, values and the vector. Loops are unrolled
+/// as by NVIDIA's compiler. The counters of an NVIDIA H100 showed the same numbers (docs/gpu.md).
 ///
 /// @param graph        the pattern of the matrix, which is symmetric
 /// @param lanes        threads of a row: 1, 2, 4, 8, 16 or 32

@@ -67,7 +67,7 @@ enum class Association : std::uint8_t { vertices, cells };
 /// Returns "vertices" or "cells". Valid for the life of the program.
 MESHORDER_API std::string_view to_string(Association association);
 
-/// The values of an array in the number type that the file gave them.
+/// The values of an array, in the number type of the file.
 using Values = std::variant<std::vector<double>, std::vector<float>, std::vector<std::int8_t>,
                             std::vector<std::uint8_t>, std::vector<std::int16_t>, std::vector<std::uint16_t>,
                             std::vector<std::int32_t>, std::vector<std::uint32_t>, std::vector<std::int64_t>,
@@ -102,9 +102,9 @@ struct EntitySet {
   bool operator==(const EntitySet&) const = default;
 };
 
-/// Data that only one format has, which its reader keeps for its writer: materials, encodings, whole sections
-/// of text. Must not depend on the order of vertices or cells, unless `moved` updates it. Only the formats of
-/// this library derive from it.
+/// Data that only one format has: materials, encodings, whole sections of text. The reader of the format
+/// keeps them for its writer. They must not depend on the order of vertices or cells, unless `moved` updates
+/// them. Only the formats of this library derive from this class.
 class MESHORDER_API FormatMetadata {
  public:
   FormatMetadata() = default;
@@ -115,7 +115,7 @@ class MESHORDER_API FormatMetadata {
   virtual ~FormatMetadata() = default;
   /// Lists, in a user's words, the parts that other formats lose: {"2 materials", "Gmsh's $Periodic"}.
   [[nodiscard]] virtual std::vector<std::string> contents() const = 0;
-  /// Returns the same data for a mesh whose vertices and cells moved, or null if it does not depend on them.
+  /// Returns the data for a mesh whose vertices and cells have moved; null if the data does not change.
   ///
   /// @param vertices  the new position of each vertex; empty if none moves
   /// @param cells     the new position of each cell, −1 for one that was left out; empty if none moves
@@ -187,8 +187,8 @@ inline constexpr std::string_view kOriginal = "original";
 /// How ids of vertices and cells change. An order that moves no vertex leaves the ids of vertices as they
 /// are; likewise for cells.
 enum class Ids : std::uint8_t {
-  /// The same numbers, ascending along the new order (for cells within each dimension of each block). A deck
-  /// of Abaqus keeps its ids if it has unknown cards, which may refer to them.
+  /// The old ids, assigned anew in ascending order (for cells within each dimension of each block). A deck of
+  /// Abaqus keeps its ids if it has unknown cards, because these may refer to the ids.
   renumber,
   keep,    ///< every vertex and cell keeps its id, so that references from other files stay valid
   attach,  ///< as `renumber`; the arrays `kOriginal` hold the old ids, or old positions from 0

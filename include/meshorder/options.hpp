@@ -94,7 +94,7 @@ struct OrderOptions {
   Workload workload = Workload::all;  ///< what `auto` optimises
   RealView start = {};    ///< an estimate of the Fiedler vector: n numbers, such as `Order::vector`; or none
   IndexView groups = {};  ///< group of each vertex, any integer, or none; groups stay together and ascend
-  IndexView cell_groups = {};  ///< group of each cell, or none; used within each block and dimension
+  IndexView cell_groups = {};  ///< group of each cell, or none; cells of one block and dimension are grouped
   Check check = Check::full;
   Symmetry symmetry = Symmetry::require;
   Run run = {};

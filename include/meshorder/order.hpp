@@ -59,7 +59,7 @@ struct MeshMethods {
 /// Vertices without neighbours come last, in their old order, except under `original` and registered methods.
 /// With `options.groups` the groups ascend, and the method orders each group.
 ///
-/// @param graph    n vertices (see `GraphView`); weights count for fiedler and registered methods only
+/// @param graph    n vertices (see `GraphView`); only fiedler and registered methods use the weights
 /// @param method   name of a vertex method
 /// @param options  see `OrderOptions`
 /// @param points   n points for geometric methods (hilbert, morton); n or none for others, which ignore them

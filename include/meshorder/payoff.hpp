@@ -46,8 +46,8 @@ inline constexpr std::array kKernels{Kernel::spmv, Kernel::element, Kernel::asse
 /// Returns "spmv", "element", "assembly" or "springs". Valid for the life of the program.
 MESHORDER_API std::string_view to_string(Kernel kernel);
 
-/// Returns the name of a set, "plain" or "tuned"; and the set of a name. `parse_kernels` throws
-/// InvalidArgument for other names.
+/// Converts a set to its name, "plain" or "tuned", and back. `parse_kernels` throws InvalidArgument for other
+/// names.
 MESHORDER_API std::string_view to_string(KernelSet kernels);
 MESHORDER_API KernelSet parse_kernels(std::string_view name);
 
@@ -74,7 +74,7 @@ struct Candidate {
   MethodChoice elements = {};
   Workload workload = Workload::all;  ///< what `auto` optimised
   Quality spans = {};                 ///< of the vertex graph in this order
-  SparsityPattern pattern = {};       ///< likewise, `kPatternSide` tiles along each side
+  SparsityPattern pattern = {};       ///< of the same graph, with `kPatternSide` tiles along each side
   OrderCosts costs = {};
   double order_seconds = 0;  ///< cost of the order: graph, both methods, moving the mesh; 0 for "original"
 };
@@ -94,13 +94,13 @@ struct Advice {
   /// Reason not to trust the measured times, a sentence: the machine was busy or throttled. Empty if they are
   /// reliable, or if nothing was measured.
   std::string doubt = {};
-  /// The machine that was predicted for: "this machine, calibrated 2026-11-22", a machine's name, or
+  /// The machine of the predicted times: "this machine, calibrated 2026-11-22", a machine's name, or
   /// "this machine's caches at the costs of zen3"; empty if nothing was predicted.
   std::string machine = {};
   /// For each kernel, the share by which two timings of the same problem differ on that machine. Smaller
   /// differences do not count. 0 if unknown.
   std::array<double, kKernels.size()> floor = {};
-  int threads = 1;                          ///< that shared each run
+  int threads = 1;                          ///< threads that shared each run
   KernelSet kernel_set = KernelSet::plain;  ///< the kernels that were timed
   /// Whether the file of the mesh holds a matrix or graph. Then spmv is the product with that matrix, the
   /// times of the other kernels are 0, and one product counts in place of a time step.
@@ -138,8 +138,8 @@ struct PayoffOptions {
 /// @param mesh     n vertices with points, m cells with types, at least one of them a line, surface or volume
 /// @param options  see `PayoffOptions`
 /// @return the kernels' times in the present order and in every candidate, and the best candidate for each.
-///         Times that differ by less than 5 % (measured), 10 % (predicted) or 25 % (predicted products), or
-///         less than `Advice::floor`, count as equal
+///         Times count as equal if they differ by less than `Advice::floor`, or by less than 5 % (measured,
+///         or predicted by a calibration), 10 % (else predicted) or 25 % (else predicted, products)
 /// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for unknown types and
 ///         machines, if neither `predict` nor `measure` is true, for `predict` with tuned kernels, and for
 ///         `predict` with `all_threads` if the machine's costs on that number of threads are not known, and

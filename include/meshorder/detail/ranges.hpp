@@ -102,7 +102,7 @@ constexpr void check_data(const void* data, std::size_t count) {
   if (data == nullptr && count > 0) refuse_null(count);
 }
 
-/// Returns a count as std::size_t; 0 for a negative one, so that later checks find the wrong size.
+/// Returns a count as std::size_t; 0 for a negative count, so that later checks report a wrong size.
 template <CountType N>
 constexpr std::size_t checked_count(N count) noexcept {
   if constexpr (std::is_signed_v<N>) {
