@@ -11,9 +11,9 @@
 
 namespace meshorder {
 
-/// How a bucket stores an entry: as it is. A specialisation can take less memory: it stores the entry's row
-/// relative to the first row of its part, and the key relative to the first key of its bucket. A bucket has
-/// at most 65,536 keys.
+/// The form in which a bucket stores an entry; by default unchanged. A specialisation can take less memory:
+/// it stores the row relative to the first row of the part, and the key relative to the first key of the
+/// bucket. A bucket has at most 65,536 keys.
 template <class Entry>
 struct StoredEntry {
   Entry entry;
@@ -59,7 +59,6 @@ class Buckets {
     std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
   }
 
-  /// Returns the number of buckets.
   [[nodiscard]] Index size() const { return chunk_count(keys_, width()); }
 
   /// Returns the number of entries before the bucket.
@@ -78,7 +77,7 @@ class Buckets {
     return starts;
   }
 
-  /// Calls `visit(entry)` for the entries of the bucket, in the order in which they came.
+  /// Calls `visit(entry)` for the entries of the bucket, in their given order.
   template <class Visit>
   void for_each(Index bucket, const Visit& visit) const {
     for (Index k = 0; k < index_size(parts_); ++k) {
@@ -105,7 +104,7 @@ class Buckets {
 
   Index keys_;
   Index rows_of_part_;
-  int log2_width_ = 10;  ///< of the number of keys in a bucket
+  int log2_width_ = 10;  ///< log₂ of the number of keys in a bucket
   std::vector<SortedPart> parts_;
   std::vector<Offset> starts_;  ///< where each bucket begins among the entries of all parts, and the end
 };

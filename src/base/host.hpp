@@ -12,10 +12,10 @@ namespace meshorder {
 /// "`architecture` processor".
 std::string processor_name(std::istream& cpuinfo, const std::string& architecture);
 
-/// Returns the name of this machine's processor, as processor_name.
+/// Returns `processor_name` of this machine.
 std::string processor_of_this_machine();
 
-/// The family of a processor, by the numbers that x86's CPUID gives.
+/// The family of a processor, in the numbers of x86's CPUID; −1 on other processors.
 struct ProcessorFamily {
   std::string maker;  ///< "AuthenticAMD"; empty on other processors
   int family = -1;

@@ -35,7 +35,7 @@ int opened_at(int folder, const char* name, int flags) {
   return result;
 }
 
-/// Opens an absolute path, no part of which may be a link. Returns −1 and sets errno on failure.
+/// Opens an absolute path in which no component is a link. Returns −1 and sets errno on failure.
 int opened_without_links(const fs::path& path) {
   int folder = opened_at(AT_FDCWD, "/", kPassing);
   const fs::path below = path.relative_path();
@@ -43,7 +43,7 @@ int opened_without_links(const fs::path& path) {
     const bool is_last = std::next(part) == below.end();
     struct stat status {};
     int next = -1;
-    // do not open a device: that may have an effect
+    // opening a device may have side effects: do not open it
     if (::fstatat(folder, part->c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0) {
       const bool may_open = is_last ? S_ISREG(status.st_mode) || S_ISFIFO(status.st_mode) : true;
       errno = S_ISLNK(status.st_mode) ? ELOOP : ENXIO;
@@ -141,7 +141,7 @@ void InputFile::require_readable() {
   if (S_ISFIFO(status.st_mode)) wait_for_writer();
 }
 
-/// Waits up to three seconds for a writer of a pipe: a byte, an end or EAGAIN shows that there is or was one.
+/// Waits up to three seconds for a writer of a pipe. A byte, an end or EAGAIN shows that it has had a writer.
 /// Later reads block.
 void InputFile::wait_for_writer() {
   constexpr int kTurns = 300;

@@ -15,8 +15,8 @@ namespace meshorder {
 std::optional<std::filesystem::path> real_path_below(const std::filesystem::path& path,
                                                      std::span<const std::filesystem::path> folders);
 
-/// A file that is open for reading. All files that are read are opened here, except those of the system that
-/// describe the machine (/proc, /sys).
+/// A file that is open for reading. The library reads all files through this class, except the system's
+/// descriptions of the machine (/proc, /sys).
 ///
 /// Opening does not wait for long: a pipe that the user named needs a writer within three seconds; other
 /// pipes are refused like devices, sockets and folders. Throws InputError for these, for a file that is
@@ -26,8 +26,8 @@ class InputFile {
   /// Opens the path that the user gave. Links are followed; a pipe is read to its end.
   explicit InputFile(const std::filesystem::path& path);
   /// Opens a file whose name comes from a file, a folder or another name. It must lie below one of the
-  /// folders (see `real_path_below`). The path is checked first and then opened part by part. No part may be
-  /// a link: a link that another process puts there after the check is not followed.
+  /// folders (see `real_path_below`). The links of the path are resolved first. Its components are then
+  /// opened one by one; a link that another process puts there meanwhile is not followed.
   InputFile(const std::filesystem::path& path, std::span<const std::filesystem::path> folders);
   ~InputFile();
   InputFile(InputFile&& other) noexcept;

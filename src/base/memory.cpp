@@ -26,12 +26,12 @@ namespace fs = std::filesystem;
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process
 MemoryLimit given_limit;
 
-/// Returns the least limit of a control group and the groups around it, whose folders are below `root`.
+/// Returns the least limit of a control group and of the groups that contain it; `root` has their folders.
 std::uint64_t limit_of_group(const fs::path& root, fs::path group, const char* file) {
   std::uint64_t least = UINT64_MAX;
   while (true) {
     std::uint64_t limit = 0;
-    // "max" is no number, and no limit
+    // "max" means no limit; reading it as a number fails
     if (std::ifstream stream(root / group.relative_path() / file); stream >> limit) {
       least = std::min(least, limit);
     }

@@ -23,7 +23,7 @@ struct MemoryLimit {
   bool is_given = false;  ///< by `set_memory_limit`
 };
 
-/// Returns the limit of this process; three quarters of `usable_memory` where none is given.
+/// Returns the limit of this process; three quarters of `usable_memory` if none was set.
 MemoryLimit memory_limit();
 
 /// Sets the limit for the rest of the process. Must not be called while other threads read or order.
@@ -53,8 +53,8 @@ std::string size_text(std::uint64_t bytes);
 void ask_for_large_pages(void* memory, std::size_t bytes) noexcept;
 
 /// Clears the pages of memory that is about to be filled, on all threads; otherwise one thread would clear
-/// them when it first touches them. Polls. A hint, without effect on smaller blocks and on systems other than
-/// Linux.
+/// them when it first touches them. Calls `poll`. A hint, without effect on blocks below 32 MiB, with one
+/// thread, and on systems other than Linux.
 void clear_pages(void* memory, std::size_t bytes);
 
 /// Like `container.reserve(size)`, and asks for large pages if it allocates. It then reserves at least twice
@@ -66,7 +66,7 @@ void reserve_large(Container& container, std::size_t size) {
   ask_for_large_pages(container.data(), container.capacity() * sizeof(*container.data()));
 }
 
-/// Like `container.resize(size)`, by `reserve_large` and `clear_pages`. Polls.
+/// Like `container.resize(size)`, but uses `reserve_large` and `clear_pages`, and calls `poll`.
 template <class Container>
 void resize_large(Container& container, std::size_t size) {
   reserve_large(container, size);

@@ -23,8 +23,9 @@ namespace meshorder {
 /// Returns the number of chunks of `size` that make up 0 … n−1; the last one may be shorter.
 constexpr Index chunk_count(Index n, Index size) { return static_cast<Index>((Offset{n} + size - 1) / size); }
 
-/// How threads share the turns of a loop. balanced: a thread without work takes some from another. repeated:
-/// if possible, each thread takes the same turns as last time, whose data its caches may still hold.
+/// How threads share the turns (iterations) of a loop. balanced: a thread without work takes turns from
+/// another. repeated: if possible, each thread takes its turns of last time; caches may still hold their
+/// data.
 enum class Sharing { balanced, repeated };
 
 /// Calls `work(begin, end)` for ranges that make up 0 … n−1, on all threads. The ranges vary from call to
@@ -36,7 +37,7 @@ enum class Sharing { balanced, repeated };
 /// @throws what `work` throws; Stopped within a loop that another thread has cancelled
 void share_turns(Offset n, Sharing sharing, const std::function<void(Offset begin, Offset end)>& work);
 
-/// Calls `work(i)` for 0 … n−1, on all threads. Each turn on the calling thread polls.
+/// Calls `work(i)` for 0 … n−1, on all threads. Each turn calls `poll` first.
 ///
 /// @throws what `work` and `poll` throw, and as `share_turns`
 template <class Number, class Work>
@@ -66,8 +67,8 @@ void for_each_chunk(Index n, Index size, Work work) {
 }
 
 /// Calls `work(i)` for 0 … n−1, on all threads. Each thread takes the next i when it has finished one, so the
-/// longest turns should come first. Meant for few turns that take a millisecond or more. Turns on the calling
-/// thread poll.
+/// longest turns should come first. Meant for few turns that take a millisecond or more. Each turn calls
+/// `poll` first.
 ///
 /// @throws as `parallel_loop`; turns that have not begun are then skipped
 template <class Work>
@@ -86,8 +87,8 @@ void take_turns(Index n, const Work& work) {
   });
 }
 
-/// Returns the sum of `part(begin, end)` over the chunks, added in their order, so that it is the same
-/// for any number of threads. `Sum` needs a zero by `Sum{}` and +=.
+/// Returns the sum of `part(begin, end)` over the chunks, added in their order: it is the same for any number
+/// of threads. `Sum{}` must be zero, and `Sum` needs +=.
 template <class Sum, class Part>
 Sum sum_over_chunks(Index n, Index size, Part part) {
   std::vector<Sum> parts(chunk_count(n, size));

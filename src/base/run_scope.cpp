@@ -51,7 +51,7 @@ void RunScope::tell() {
   const double seconds = std::chrono::duration<double>(now - start_).count();
   const OutsideOfCalls outside;
   if (!run_.progress({.stage = stage_, .fraction = fraction_, .seconds = seconds})) throw Stopped();
-  // not `now`: a slow function would be called again at every poll
+  // read the clock again: after a slow function, `now` would be out of date and every poll would call it
   told_ = std::chrono::steady_clock::now();
 }
 

@@ -38,8 +38,8 @@ class RunScope {
   double fraction_ = -1;
 };
 
-/// Reports what the calling thread's call does now and the fraction of the call that is done: 0 … 1, or −1 if
-/// unknown. The fraction never falls: a smaller one is replaced by the last. Calls the user's progress
+/// Reports the present stage of the calling thread's call, and the fraction of the call that is done: 0 … 1,
+/// or −1 if unknown. A fraction below the last one is replaced by the last one. Calls the user's progress
 /// function if 50 ms have passed since it was last called.
 ///
 /// @throws Stopped if the progress function returns false, and the exceptions of that function

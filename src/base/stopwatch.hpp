@@ -5,7 +5,7 @@
 
 namespace meshorder {
 
-/// Wall-clock time since it was made.
+/// Measures wall-clock time from its construction on.
 class Stopwatch {
  public:
   [[nodiscard]] double seconds() const {

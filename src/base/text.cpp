@@ -165,7 +165,7 @@ std::string xml_escaped(std::string_view text) {
       case '\t':
       case '\n':
       case '\r':
-        // readers replace these by blanks in an attribute unless they are escaped
+        // XML readers replace unescaped tabs and line ends in an attribute by blanks
         result += "&#" + std::to_string(static_cast<int>(c)) + ";";
         break;
       default:

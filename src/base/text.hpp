@@ -129,8 +129,8 @@ std::string names_of() {
   return join(EnumNames<Enum>::names, [](const auto& entry) { return std::string_view(entry.second); });
 }
 
-/// Returns the value of that name. Throws InvalidArgument, which offers the nearest name or lists all, if
-/// there is none.
+/// Returns the value of that name. Throws InvalidArgument if there is none; the message suggests the nearest
+/// name or lists all names.
 template <NamedEnum Enum>
 Enum parse(std::string_view text) {
   for (const auto& [value, name] : EnumNames<Enum>::names) {
