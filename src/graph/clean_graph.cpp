@@ -100,7 +100,7 @@ OwnedGraph without_loops(const GraphArrays& graph) {
   return copy;
 }
 
-/// Puts a clean copy in the place of the caller's arrays.
+/// Lets `arrays` own the clean copy and refer to it.
 void adopt(GraphArrays& arrays, OwnedGraph clean) {
   arrays.own_offsets = std::move(clean.offsets);
   arrays.own_neighbours = std::move(clean.neighbours);

@@ -24,8 +24,8 @@ struct CsrGraph {
   bool operator==(const CsrGraph&) const = default;
 };
 
-/// A view of a clean undirected graph, which the algorithms take. Converts from a `CsrGraph`, or refers to a
-/// caller's arrays that have the form described for CsrGraph. Costs four words to copy.
+/// A view of a clean undirected graph; the algorithms take graphs in this form. Refers to a `CsrGraph` or to
+/// a caller's arrays in the form described for CsrGraph. A copy takes four words.
 struct GraphRef {
   std::span<const Offset> offsets;    ///< n + 1, from 0
   std::span<const Index> neighbours;  ///< twice the number of edges

@@ -28,8 +28,8 @@ struct GraphFindings {
 /// @note O(n + entries), on all threads; the result does not depend on their number.
 GraphFindings examine(const GraphArrays& graph, bool symmetry);
 
-/// Throws InvalidArgument for the first neighbour out of range or the first bad weight; `view` gives the
-/// caller's numbers. Returns if all are valid. O(n + entries).
+/// Throws InvalidArgument for the first neighbour out of range or the first bad weight; returns if all are
+/// valid. The message quotes the caller's numbers in `view`. O(n + entries).
 void refuse_faults(const GraphView& view, const GraphArrays& graph, const GraphFindings& findings);
 
 /// Throws InvalidArgument for the first edge of a clean graph that is in one row only or has two weights;

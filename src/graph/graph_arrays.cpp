@@ -12,8 +12,8 @@
 namespace meshorder {
 namespace {
 
-/// The two functions return number ± base. Unsigned arithmetic may wrap around: a faulty offset can be at an
-/// end of the range.
+/// These two functions return number ± base. They use unsigned arithmetic, which may wrap around: a faulty
+/// offset can be the smallest or largest int64.
 Offset less_base(std::int64_t number, int base) {
   return static_cast<Offset>(static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(base));
 }

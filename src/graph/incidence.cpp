@@ -65,7 +65,7 @@ bool is_scattered(IncidenceRef incidence) {
   return far > looks / 8;
 }
 
-// Both of the following return the rows of each column, ascending, one column after another.
+// The next two functions return the rows of each column, ascending, one column after another.
 // `entries_of(part, begin, end)` returns a function that calls its argument for each position of a part.
 
 /// @param offsets  where each column begins, and the end
@@ -89,7 +89,7 @@ std::vector<Index> by_columns(Index row_count, const EntriesOf& entries_of,
 
 /// Like `by_columns`, for scattered columns, on all threads.
 ///
-/// @param offsets  are written: where each column begins, and the end
+/// @param offsets  written: where each column begins, and the end
 template <class EntriesOf>
 std::vector<Index> by_columns_in_buckets(Index row_count, const EntriesOf& entries_of,
                                          std::vector<Offset>& offsets) {
@@ -149,7 +149,7 @@ namespace {
 /// Rows of a graph one after another, entries within a row in any order.
 struct Rows {
   std::vector<Index> neighbours;
-  Offset end = 0;  ///< of the neighbours in use
+  Offset end = 0;  ///< number of neighbours in use
 };
 
 /// Finds the vertices of each element in the list of all vertices. `Size` is the size of every element, so
@@ -218,7 +218,7 @@ std::vector<Rows> find_rows(Elements<Size> elements, std::vector<Offset>& degree
   return parts;
 }
 
-/// Does the same for elements whose size is known only at run time.
+/// The same for elements whose size is known only at run time.
 std::vector<Rows> find_rows(IncidenceRef elements, std::vector<Offset>& degrees) {
   switch (common_size(elements)) {
     case 3:
@@ -230,8 +230,8 @@ std::vector<Rows> find_rows(IncidenceRef elements, std::vector<Offset>& degrees)
   }
 }
 
-/// Returns the symmetric graph with these rows, kRowsOfPart in each of `parts`, and sorts each row: writing a
-/// symmetric matrix by columns gives its rows in ascending order. Parts are freed once they are read.
+/// Returns the symmetric graph with these rows, kRowsOfPart in each of `parts`. Its rows ascend, because
+/// writing a symmetric matrix by columns gives ascending rows. Each part is freed once it is read.
 CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::vector<Rows> parts, bool scattered) {
   CsrGraph graph;
   graph.offsets = std::move(offsets);

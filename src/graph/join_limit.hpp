@@ -10,15 +10,15 @@
 
 namespace meshorder {
 
-/// The memory limit on a graph that joins all members of each row counts only rows of more members than this.
+/// A graph can join all members of each row. The memory limit on such graphs counts only rows with more
+/// members than this.
 inline constexpr std::size_t kManyJoined = 64;
 
-/// The most bytes that ordering takes for an entry of a graph made of long rows, including the graph and its
-/// copies.
+/// Largest memory for ordering, in bytes for each entry of such a graph; includes the graph and its copies.
 inline constexpr std::uint64_t kBytesToOrder = 24;
 
 /// Limits the memory of each graph that this process makes from long rows, and of the data computed from it.
-/// `memory_limit` holds in any case. Must not be called while other threads order.
+/// `memory_limit` also applies. Must not be called while other threads order.
 ///
 /// @param bytes           for a graph and all that is computed from it
 /// @param bytes_of_entry  estimated bytes for each entry of the graph

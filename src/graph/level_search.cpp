@@ -31,8 +31,8 @@ void LevelSearch::forget(Index first, Index end) {
   std::fill(found_by_.begin() + first, found_by_.begin() + end, kNobody);
 }
 
-/// Writes each neighbour and keeps it if it is new, without a branch: a processor cannot predict whether a
-/// vertex has been found before.
+/// Writes every neighbour to the end of `places`, and moves the end only for new ones. This takes no branch:
+/// a processor cannot predict whether a vertex has been found before.
 Index LevelSearch::find_next_level(std::span<Index> places, Index begin, Index end, Arrange arrange) {
   Index found = end;
   for (Index k = begin; k < end; ++k) {

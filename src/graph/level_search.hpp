@@ -36,13 +36,13 @@ class LevelSearch {
   [[nodiscard]] Index depth() const noexcept { return index_size(level_start_) - 2; }
 
   [[nodiscard]] bool has_found(Index v) const { return found_by_[v] != kNobody; }
-  /// Lets the vertices first … end − 1, which must be whole components, be found again.
+  /// Lets a search find the vertices first … end − 1 again. They must be whole components.
   void forget(Index first, Index end);
 
  private:
   static constexpr Index kNobody = std::numeric_limits<Index>::max();
 
-  /// A vertex, and the place of a vertex that finds it.
+  /// A vertex, and the place of the vertex that found it.
   struct Finding {
     Index vertex;
     Index by;

@@ -7,7 +7,7 @@
 
 namespace meshorder {
 
-// Loops over vertices visit rows that are anywhere in memory, and search them with unpredictable results.
+// Loops over vertices visit rows anywhere in memory and search them; the results are unpredictable.
 // These functions prefetch rows a few steps ahead, and search without branches.
 
 /// Prefetches the first two cache lines of a row, which hold at least 17 entries.

@@ -22,9 +22,9 @@ struct ComponentCounts {
 /// as that function.
 ComponentCounts component_counts(GraphRef graph);
 
-/// A graph numbered by breadth-first searches, one from the smallest vertex of each component; further
-/// searches find their data in the cache. Rows list the same neighbours in the same order as before: a search
-/// visits the vertices of both graphs in the same order.
+/// A graph numbered by breadth-first searches, one from the smallest vertex of each component. Later searches
+/// of this copy use the cache well. Its rows list the same neighbours in the same order as the original: a
+/// search visits the vertices of both graphs in the same order.
 struct BreadthFirstCopy {
   /// A component's vertices, first … end − 1, level after level.
   struct Component {
@@ -42,10 +42,10 @@ struct BreadthFirstCopy {
   [[nodiscard]] GraphRef graph() const { return {offsets, neighbours}; }
 };
 
-/// Numbers a graph anew by one breadth-first search, on all threads. O(n + edges).
+/// Returns the breadth-first copy of a graph. On all threads. O(n + edges).
 BreadthFirstCopy breadth_first_copy(GraphRef graph);
 
-/// Returns the vertices of a component in breadth-first order from a vertex that is far from the others. Each
+/// Returns the vertices of a component in breadth-first order from a vertex on the component's rim. Each
 /// search starts at a vertex of least degree in the last level of the previous search (ties: smallest old
 /// number), until the number of levels stops growing (Gibbs, Poole, Stockmeyer 1976, as simplified by George
 /// and Liu 1979). O(searches · component), with few searches in practice. The search that made the copy is
