@@ -38,9 +38,9 @@ void keep_unmatched(std::vector<ElementFacet>& facets) {
             [](const ElementFacet& a, const ElementFacet& b) { return a.element < b.element; });
 }
 
-/// Removes the facets whose corners all belong to one polyhedron: such a facet is between the polyhedron and
-/// its element. For each facet, compares the corners of all polyhedra at one of the facet's corners, the one
-/// with the fewest polyhedra.
+/// Removes the facets whose corners all belong to one polyhedron: such a facet separates its element from the
+/// polyhedron. For each facet, chooses the corner with the fewest polyhedra and compares the corners of these
+/// polyhedra.
 void drop_facets_of_polyhedra(const Mesh& mesh, std::vector<ElementFacet>& facets) {
   std::vector<std::pair<Index, Index>> polyhedra;  // a vertex, and a polyhedron that has it as a corner
   for (Index c = 0; c < mesh.cell_count(); ++c) {

@@ -20,8 +20,8 @@ std::string note_of_degenerate(std::int64_t count, std::int64_t first);
 /// Appends `count` cells of one shape with `nodes` vertices each, all of them vertex 0. O(cells · nodes).
 void append_cells(Cells& cells, Shape shape, int nodes, Index count);
 
-/// Keeps `count` cells from cell `first` on, each with the first vertices of its own as corners and no
-/// others; removes all cells after these. O(vertices of these cells).
+/// Keeps `count` cells from cell `first` on, with their corners only (their first vertices); removes all
+/// cells after these. O(vertices of these cells).
 void trim_to_corners(Cells& cells, Index first, Index count);
 
 }  // namespace meshorder

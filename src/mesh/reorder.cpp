@@ -54,7 +54,7 @@ Cells reordered(Cells&& cells, const Permutation& vertices, const Permutation& o
     std::transform(from, from + (size > 0 ? size : cells.vertex_count(old)), to,
                    [&](Index v) { return new_number[v]; });
   });
-  if (size > 0) result.offsets = std::move(cells.offsets);  // last: if a loop stops, the cells are whole
+  if (size > 0) result.offsets = std::move(cells.offsets);  // last: if a loop throws, `cells` is still whole
   return result;
 }
 
@@ -182,8 +182,8 @@ void move_mesh(Mesh& mesh, const Permutation& vertices, const Permutation& cells
 
 namespace {
 
-/// Returns the properties that cells of one type share: dimension, shape and size. Sorts by falling
-/// dimension.
+/// Returns the properties that cells of one type share: −dimension, shape and size. Sorting by them puts the
+/// highest dimension first.
 std::array<int, 3> type_of(const Cells& cells, Index c) {
   const Shape shape = cells.shapes[c];
   return {-dimension(shape), static_cast<int>(shape), cells.vertex_count(c)};

@@ -33,11 +33,11 @@ const StoredMatrix* stored_matrix(const Mesh& mesh);
 /// entries).
 Mesh matrix_mesh(const GraphView& matrix);
 
-/// Returns whether the points of a mesh differ. All points of a matrix are 0 unless given separately.
+/// Returns whether the points of a mesh differ. The points of a matrix are all 0 unless given separately.
 bool has_places(const Mesh& mesh);
 
-/// The places of all entries of a matrix, even if only one half is stored: row i has entries in the columns
-/// `columns[starts[i]] … columns[starts[i + 1] − 1]`, rising, each once.
+/// The positions of all entries of a matrix, even if the file stores only one half. Row i has entries in the
+/// columns `columns[starts[i]] … columns[starts[i + 1] − 1]`, ascending, each once.
 struct EntryPattern {
   std::vector<Offset> starts{0};  ///< rows + 1
   std::vector<Index> columns;
@@ -54,7 +54,7 @@ struct EntryPattern {
 /// O(entries · log row length).
 EntryPattern entry_pattern(const Mesh& mesh);
 
-/// Returns whether the transposed place of each entry has an entry, too. O(entries).
+/// Returns whether the pattern has an entry (j, i) for each entry (i, j). O(entries).
 bool is_symmetric(const EntryPattern& pattern);
 
 /// Returns the pattern of P A P′: row and column i become `rows.old_to_new()[i]`. O(entries · log row
@@ -69,7 +69,7 @@ struct PatternFacts {
   /// The largest b of 2 … 8 such that b divides the number of rows and entries fill at least the share
   /// `kFullBlocks` of the b × b blocks that have an entry; 1 if there is no such b.
   int block = 1;
-  double block_fill = 0;                    ///< share of the places in these blocks that are entries
+  double block_fill = 0;                    ///< share of the positions in these blocks that have an entry
   std::vector<Offset> histogram_log2 = {};  ///< entry k: number of entries 2^k … 2^(k+1) − 1 off the diagonal
 };
 inline constexpr double kFullBlocks = 0.8;

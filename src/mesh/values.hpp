@@ -116,7 +116,7 @@ Values values_of_type(std::size_t type, const Fill& fill) {
   return values;
 }
 
-/// As above; does not call `fill` for texts.
+/// The same, but does not call `fill` for texts.
 template <class Fill>
 Values numbers_of_type(std::size_t type, const Fill& fill) {
   Values values = values_of_type(type);
@@ -124,7 +124,7 @@ Values numbers_of_type(std::size_t type, const Fill& fill) {
   return values;
 }
 
-/// Returns the size in bytes of a number; 0 for texts.
+/// Returns the size in bytes of a number of the type with that index in Values; 0 for texts.
 inline std::int64_t size_of_type(std::size_t type) {
   return std::visit(
       [](const auto& numbers) {
