@@ -35,7 +35,7 @@ void check_alignment(const void* data, mo_type type, const char* name) {
                  ": copy the array to an aligned one");
 }
 
-/// Returns whether there is a non-empty array. Throws if its size is negative, or its data null or unaligned.
+/// Returns whether the array has entries. Throws if its size is negative, or its data null or unaligned.
 bool is_given(const mo_in* array, const char* name) {
   if (array == nullptr || array->size == 0) return false;
   if (array->size < 0) fail(name, "the size is " + std::to_string(array->size) + ", must not be negative");

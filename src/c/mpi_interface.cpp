@@ -28,7 +28,7 @@ using distributed::GlobalIndex;
 using distributed::Layout;
 using distributed::OwnedMesh;
 
-/// The largest number of vertices of a rank, such that sums over ranks do not overflow.
+/// The largest number of vertices that a rank may have; sums over ranks then do not overflow.
 constexpr std::int64_t kMostVertices = std::int64_t{1} << 40;
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): the error of each thread
@@ -174,7 +174,8 @@ OwnedMesh mesh_of(const Communicator& communicator, const mo_mpi_mesh* given) {
   return mesh;
 }
 
-/// Writes numbers to the caller's array, which may be null unless `wanted` names it (for the error message).
+/// Writes numbers to the caller's array. If `wanted` is given, the array must not be null; `wanted` is the
+/// name of the array in the message.
 void write(const Communicator& communicator, const std::vector<GlobalIndex>& numbers, std::int64_t* to,
            const char* wanted = nullptr) {
   communicator.together([&] {
