@@ -16,7 +16,7 @@ class CacheWindows {
   static constexpr Offset kSectorBytes = 32;
 
   /// @param array_bytes  size of the array of records
-  /// @param alike        number of arrays of records that are touched together, ≥ 1
+  /// @param alike        number of arrays of this size; `touch` reads the same record of each; ≥ 1
   /// @param cache_bytes  ≥ 1
   CacheWindows(Offset array_bytes, int alike, Offset cache_bytes)
       : window_of_(static_cast<std::size_t>(array_bytes / kSectorBytes) + 1, -1),

@@ -68,7 +68,7 @@ CellArrays cell_arrays(const CellsView& view, std::size_t vertex_count, Check ch
 /// @throws InvalidArgument if cells have different numbers; the message begins with `caller`
 int uniform_width(const CellArrays& cells, const char* caller);
 
-/// Some cells, and the vertices that each joins.
+/// A selection of cells, and their vertices.
 class CellSelection {
  public:
   /// The cells of the highest dimension: the elements that are simulated. If these are all cells, refers to

@@ -35,9 +35,9 @@ namespace {
 
 constexpr Offset kFloatBytes = 4;
 constexpr Offset kIndexBytes = 4;
-constexpr Offset kLocalBytes = 2;          // of a vertex's number within its patch
+constexpr Offset kLocalBytes = 2;          // a vertex's number within its patch
 constexpr Offset kPackedBytes = 12;        // three numbers side by side
-constexpr Offset kContributionBytes = 16;  // that a cell stores for a corner
+constexpr Offset kContributionBytes = 16;  // a cell's contribution to a corner
 constexpr Offset kSector = CacheWindows::kSectorBytes;
 
 /// Returns the bytes of the offsets of n lists.

@@ -28,7 +28,7 @@ void deal_out(Index begin, Index end, const Work& work) {
   const Index in_last = end - begin - (warps - 1) * kWarp;
   for (Index warp = 0; warp < warps; ++warp) {
     const Index threads = warp + 1 < warps ? kWarp : in_last;
-    // the series of threads that the last warp lacks are one cell shorter
+    // the last warp may lack threads; their series are one cell shorter
     for (Index thread = 0; thread < threads; ++thread)
       work(begin + thread * warps - std::max(thread - in_last, 0) + warp);
   }
@@ -99,7 +99,7 @@ class PatchCutter {
 
   const CellArrays& cells_;
   Patches& patches_;
-  std::vector<std::uint16_t> local_of_;  ///< of each vertex; `kTaken` while the vertices of a patch are found
+  std::vector<std::uint16_t> local_of_;  ///< for the vertices of the patch: `kTaken`, then the local number
 };
 
 }  // namespace
@@ -152,7 +152,7 @@ GatherLists gather_lists(const CellsView& cells, std::size_t vertex_count, const
     std::partial_sum(lists.offsets.begin(), lists.offsets.end(), lists.offsets.begin());
     lists.cells.resize(arrays.vertices.size());
     lists.corners.resize(arrays.vertices.size());
-    // faster than `transposed` and a search for each vertex in its cells, which take three times as long
+    // calling `transposed` and then searching each vertex in its cells would take three times as long
     std::vector<Offset> next(lists.offsets.begin(), lists.offsets.end() - 1);
     for (Index c = 0; c < arrays.size(); ++c) {
       const std::span<const Index> corners = arrays.incidence()[c];

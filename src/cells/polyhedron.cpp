@@ -11,12 +11,12 @@ constexpr std::size_t kMostFaces = 6;
 constexpr std::size_t kMostCorners = 4;
 constexpr std::size_t kNoTwin = kMostFaces * kMostCorners;
 
-/// An edge of a face, in the direction in which the face gives it.
+/// An edge of a face, directed as the face lists its corners.
 struct FaceEdge {
   Index from;
   Index to;
   std::size_t face;
-  std::size_t twin = kNoTwin;  ///< the same edge of another face
+  std::size_t twin = kNoTwin;  ///< place in `edges_` of the same edge of another face
 };
 
 /// A standard shape, described by its faces.
@@ -71,7 +71,7 @@ class FewFaces {
   }
 
  private:
-  /// Finds the other face of each edge; returns false unless each has exactly one.
+  /// Finds the twin of each edge; returns false unless each edge belongs to exactly two faces.
   bool match_edges() {
     for (std::size_t i = 0; i < edge_count_; ++i) {
       FaceEdge& edge = edges_[i];

@@ -28,7 +28,7 @@ struct CellOfFaces {
   Shape shape = Shape::tetrahedron;  ///< of a standard cell
   std::array<Index, 8> corners{};    ///< of a standard cell, in the order of `Cells`
   int size = 0;                      ///< number of corners
-  bool signs_agree = false;          ///< whether all `is_inward` belong to the same orientation
+  bool signs_agree = false;          ///< whether `is_inward` is right for all faces, or wrong for all
 
   [[nodiscard]] std::span<const Index> cell() const {
     return {corners.data(), static_cast<std::size_t>(size)};
@@ -37,8 +37,8 @@ struct CellOfFaces {
 
 /// Returns the cell that these faces enclose, whatever their order. Its orientation is that of the first
 /// face; the orientations of other faces only affect `signs_agree`. O(faces² + edges²) time for up to six
-/// faces of up to four corners. All other polyhedra get the kind `other` in O(faces) time, without a look at
-/// their edges.
+/// faces of up to four corners. Polyhedra with more faces or corners get the kind `other` in O(faces) time;
+/// their edges are not examined.
 CellOfFaces cell_of_faces(std::span<const PolyhedronFace> faces);
 
 /// Turns a linear tetrahedron, pyramid, wedge or hexahedron inside out.

@@ -33,8 +33,8 @@ Additions additions_of(GpuLayout layout) {
   }
 }
 
-/// Returns the sectors of one addition to ascending vertices. A sector counts as often as the largest number
-/// of threads that add to one of its vertices.
+/// Returns the sectors of one addition by the threads of a warp to their vertices. A sector counts as often
+/// as the largest number of threads that add to one of its vertices.
 Offset sectors_of_addition(std::span<const Index> ascending, int record_bytes, int first_byte) {
   Offset sectors = 0;
   Offset sector = -1;
@@ -54,7 +54,7 @@ Offset sectors_of_addition(std::span<const Index> ascending, int record_bytes, i
   return sectors + most;
 }
 
-/// Returns the sectors of all additions that a thread makes to its vertex.
+/// Returns the sectors of all additions by the threads of a warp to their vertices.
 Offset sectors_of_additions(std::span<const Index> ascending, const Additions& additions) {
   Offset sectors = 0;
   for (int k = 0; k < additions.count; ++k) {
@@ -87,12 +87,12 @@ Offset different(std::span<Offset> numbers) {
   return count;
 }
 
-/// A warp in a loop over lists.
+/// Simulates the loop in which the threads of a warp read lists.
 class WarpLoop {
  public:
   WarpLoop(const RecordLists& lists, int lanes) : lists_(lists), lanes_(lanes) {}
 
-  /// Adds the threads of a list.
+  /// Adds the `lanes` threads that read a list.
   void add(Index list) {
     const Offset begin = lists_.offsets[list];
     const Offset end = lists_.offsets[list + 1];

@@ -19,7 +19,7 @@ inline constexpr Index kWarp = 32;
 struct ElementOrder {
   IncidenceRef elements;
   std::span<const Index> new_to_old = {};         ///< empty: the order of their numbers
-  std::span<const Index> vertex_old_to_new = {};  ///< likewise
+  std::span<const Index> vertex_old_to_new = {};  ///< empty: the vertices keep their numbers
 };
 
 /// Returns the sectors of atomic additions to the vertices of elements, counted as in `GpuCost::sectors`,
@@ -39,7 +39,7 @@ GpuCost additions_to(std::span<const Index> ascending, GpuLayout layout);
 
 /// Memory that loops over lists load, with one thread or several threads for each list.
 struct ListLoads {
-  Offset requests = 0;  ///< steps of a warp
+  Offset requests = 0;  ///< steps of warps; in each, the active threads load one entry
   Offset lists = 0;     ///< sectors of an array that has 4 bytes for each entry of the lists
   Offset records = 0;   ///< sectors of the records that the entries name
 
@@ -52,7 +52,7 @@ struct RecordLists {
   std::span<const Index> records;              ///< the record of each entry; empty: see `cells`
   int record_bytes = 4;                        ///< 4, 8, 16 or 32
   std::span<const Index> cells = {};           ///< entry i names record cells[i] · width + corners[i]
-  std::span<const std::uint8_t> corners = {};  ///< likewise
+  std::span<const std::uint8_t> corners = {};  ///< see `cells`
   int width = 1;
 
   [[nodiscard]] Offset record(Offset entry) const {
