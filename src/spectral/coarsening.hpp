@@ -26,7 +26,7 @@ SparseRows transposed(const SparseRows& a);
 /// is the sum of all weights between two aggregates. O(n + edges), on all threads.
 Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggregation& aggregation);
 
-/// Does the same for some rows of a larger graph. The vertices of these rows have the first numbers.
+/// The same for some rows of a larger graph. The vertices of these rows have the first numbers.
 ///
 /// @param aggregation  of the rows; `aggregate_of` has the other vertices too
 /// @param columns      number of all aggregates; aggregates of the rows come before those of other vertices

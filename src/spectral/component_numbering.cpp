@@ -18,8 +18,8 @@ namespace {
 constexpr Index kUnseen = -1;
 constexpr Index kFound = -2;    // seen, not numbered yet
 constexpr Index kBatch = 256;   // vertices whose discoveries are sorted together
-constexpr Index kWave = 8;      // with at least so many batches, threads share them
-constexpr Index kDegrees = 64;  // larger degrees are rare, and are sorted as if they were this
+constexpr Index kWave = 8;      // threads share the work if there are at least this many batches
+constexpr Index kDegrees = 64;  // larger degrees are rare; they are sorted as this degree
 
 /// Numbers the components one after another.
 class Search {

@@ -33,7 +33,8 @@ VectorBlock<1> given_start(RealView start, std::span<const Index> vertices) {
   return x;
 }
 
-/// Writes the Fiedler vector of a component with that Laplacian to the entries `vertices` of `values`.
+/// Computes the Fiedler vector of a component from its Laplacian, and writes it to the entries `vertices` of
+/// `values`.
 FiedlerComponent solve_component(Laplacian laplacian, std::span<const Index> vertices,
                                  const FiedlerOptions& options, TimeLimit limit,
                                  std::vector<double>& values) {
@@ -68,7 +69,7 @@ void normalise(std::vector<double>& values, const std::vector<Index>& vertices) 
     norm_squared += values[v] * values[v];
     largest = std::max(largest, std::abs(values[v]));
   }
-  if (!(norm_squared > 0) || !std::isfinite(norm_squared)) {  // no vector was found; sorting needs numbers
+  if (!(norm_squared > 0) || !std::isfinite(norm_squared)) {  // no vector was found; NaN cannot be sorted
     for (const Index v : vertices) values[v] = 0;
     return;
   }
@@ -154,7 +155,8 @@ std::vector<double> scaled(std::span<const double> weights, int exponent) {
   return result;
 }
 
-/// Converts a result for scaled weights to the result for the given weights; at most the largest double.
+/// Converts a result for scaled weights to the result for the given weights; if this overflows, returns the
+/// largest double.
 double scaled_back(double figure, int exponent) {
   return std::min(std::ldexp(figure, -exponent), std::numeric_limits<double>::max());
 }

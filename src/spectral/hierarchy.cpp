@@ -22,7 +22,7 @@ constexpr Index kExactSize = 128;    // counting eigenvalues by pivots takes 0.1
 /// Makes the next coarser level of `fine`, and stores the transfer to it in `fine`. Returns false if that is
 /// not worthwhile.
 bool coarsen(Level& fine, bool smoothed, Level& coarse) {
-  constexpr Index kFewAlone = 50;  // at most one vertex in so many may be alone
+  constexpr Index kFewAlone = 50;  // chunks are kept if at most one vertex in 50 is alone
   const Index n = fine.laplacian.size();
   Aggregation aggregation = aggregate(fine.laplacian, fine.chunks, kStrength, fine.masses);
   if (aggregation.alone > n / kFewAlone && fine.chunks.count() > 1) {
@@ -74,7 +74,7 @@ Eigen::MatrixXd dense_inverse(const Laplacian& laplacian) {
   Eigen::MatrixXd shifted = dense(laplacian);
   const double scale = shifted.diagonal().maxCoeff();
   if (!(scale > 0)) return Eigen::MatrixXd::Zero(n, n);  // one vertex
-  shifted.array() += scale / n;                          // moves the constant vector out of the null space
+  shifted.array() += scale / n;                          // removes the constant vector from the null space
   return shifted.llt().solve(Eigen::MatrixXd::Identity(n, n));
 }
 

@@ -12,9 +12,9 @@
 
 namespace meshorder {
 
-constexpr double kStrength = 0.1;      ///< relative to the strongest neighbour, on coarse levels
+constexpr double kStrength = 0.1;      ///< `strength` of `aggregate` on all levels
 constexpr double kWorthwhile = 0.8;    ///< coarsening that keeps a larger share of the vertices is given up
-constexpr double kOverCorrection = 2;  ///< of plain coarsening; values from 1.5 to 3 are equally good
+constexpr double kOverCorrection = 2;  ///< factor on plain corrections; 1.5 to 3 are equally good
 
 /// One graph of the hierarchy, and the transfer to the next coarser one.
 struct Level {
@@ -63,8 +63,8 @@ class Hierarchy {
   template <int M>
   void cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x, CycleWorkspace<M>& workspace) const;
 
-  /// Does the same by two cycles, for the coarse correction of the next finer level; on the coarsest level,
-  /// by one cycle. Overwrites b with another vector.
+  /// The same by two cycles (on the coarsest level, one), for the coarse correction of the next finer level.
+  /// Overwrites b.
   template <int M>
   void two_cycles(int level, VectorBlock<M>& b, VectorBlock<M>& x, VectorBlock<M>& second_x,
                   CycleWorkspace<M>& workspace) const;
@@ -74,7 +74,7 @@ class Hierarchy {
   template <int M>
   void smooth(int level, VectorBlock<M>& x) const;
 
-  /// Adds scale P y to x, with y on the next coarser level and x on `level`.
+  /// Adds scale · P · `coarse` to `fine`. `fine` is on `level`, `coarse` on the next coarser level.
   template <int M>
   void add_prolonged(int level, double scale, const VectorBlock<M>& coarse, VectorBlock<M>& fine) const;
 
@@ -89,15 +89,15 @@ class Hierarchy {
 
   /// Returns whether coarser levels may fail to show a vector with a smaller eigenvalue: an aggregate may
   /// hide it (see hiding.hpp), or there is no exact coarsest level. For up to 128 vertices the answer comes
-  /// from pivots. For a finest level of up to 1,024 vertices the answer is true, because a search takes less
-  /// than a millisecond then.
+  /// from pivots. For a finest level of 129 to 1,024 vertices it is always true, because a search then takes
+  /// less than a millisecond.
   [[nodiscard]] bool may_hide(int level, double eigenvalue) const;
 
  private:
   void coarsen_all(bool smoothed);
 
   std::vector<Level> levels_;
-  Eigen::MatrixXd coarsest_inverse_;  ///< empty if the coarsest level is too large for it
+  Eigen::MatrixXd coarsest_inverse_;  ///< empty if the coarsest level is too large for a dense inverse
 };
 
 }  // namespace meshorder

@@ -12,10 +12,10 @@ namespace meshorder {
 namespace {
 
 constexpr Index kRows = 2048;       // rows of a chunk for threads; the data of a pass stay in the L2 cache
-constexpr double kCalm = 0.01;      // relative change of a Ritz value in an iteration
+constexpr double kCalm = 0.01;      // a Ritz value is calm if its relative change per iteration is less
 constexpr int kLeastUntilCalm = 4;  // iterations until noise becomes smooth
-constexpr double kSettled = 0.2;    // residual / Ritz value; above it, a value that has stopped changing may
-                                    // still fall later
+constexpr double kSettled = 0.2;    // a Ritz value with a larger residual / value may still fall later, even
+// if it has stopped changing
 
 /// Numbers that are added entry by entry.
 template <std::size_t N>
@@ -53,7 +53,7 @@ struct SearchSpace {
       : x(std::move(start)), w(x.vectors.size()), p(x.vectors.size()), companions(std::move(fixed)) {}
 };
 
-/// Returns row v of all vectors of the space (or of the images of all), side by side.
+/// Returns row v of all vectors of the space, or of all their images, as `part` selects; side by side.
 template <int M, int C, class Part>
 std::array<double, SearchSpace<M, C>::kSize> row(const SearchSpace<M, C>& s, Index v, Part part) {
   std::array<double, SearchSpace<M, C>::kSize> result;
@@ -164,7 +164,7 @@ void residual_of_row(const WithImage<M>& x, const std::array<double, M>& values,
 
 /// Computes, for the search space S and the coefficients c:
 /// - x ← S c;
-/// - p ← the part of S c that does not come from x;
+/// - p ← S c without the contribution of x;
 /// - the images of x and p, in the same way;
 /// - r = L x − λ B x.
 ///

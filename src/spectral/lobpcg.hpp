@@ -97,12 +97,12 @@ template <int M, int Companions>
 LobpcgResult lobpcg(EigenProblem& problem, const LobpcgOptions& options, VectorBlock<M>& x,
                     VectorBlock<Companions> companions);
 
-/// Does the same on one level of a hierarchy (B its masses), preconditioned by the hierarchy's cycle.
+/// The same on one level of a hierarchy: see `LevelProblem`.
 template <int M, int Companions>
 LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x,
                     VectorBlock<Companions> companions);
 
-/// Does the same without companions.
+/// The same without companions.
 template <int M>
 LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x) {
   return lobpcg<M, 0>(hierarchy, level, options, x, {});

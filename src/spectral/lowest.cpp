@@ -24,8 +24,8 @@ int find_lower(EigenProblem& problem, double least, const LobpcgOptions& options
 LobpcgResult lowest_eigenvector(EigenProblem& problem, const LobpcgOptions& options, std::uint64_t seed,
                                 VectorBlock<1>& x, VectorBlock<1> companion) {
   constexpr int kRounds = 5;  // each round but the last one finds a lower eigenvalue
-  // the Rayleigh quotient of x is within the tolerance of an eigenvalue; an eigenvalue below this share of it
-  // is a different one
+  // the Rayleigh quotient of x is within the tolerance of an eigenvalue; an eigenvalue that is less than this
+  // share of the quotient is therefore a different one
   const double nearly_equal = 1 - std::clamp(options.tolerance, 1e-6, 0.1);
   LobpcgResult result = lobpcg<1, 1>(problem, options, x, std::move(companion));
   for (std::uint64_t round = 1; round <= kRounds; ++round) {

@@ -19,7 +19,7 @@ int find_lower(EigenProblem& problem, double least, const LobpcgOptions& options
                VectorBlock<2>& x);
 
 /// Improves `x` by `lobpcg` towards the eigenvector of the smallest eigenvalue after that of the constant
-/// vector, and checks for a smaller one if that is in doubt.
+/// vector. If there may be a smaller eigenvalue, searches for it.
 ///
 /// A small residual shows that λ is near an eigenvalue, but not near which one: if most eigenvalues are about
 /// equal, as for cliques, even random vectors have a small residual. Coarse graphs find the right eigenvalue

@@ -13,8 +13,8 @@ namespace meshorder {
 namespace {
 
 constexpr Index kFewVertices = 300;          // a search on this many vertices takes a third of a millisecond
-constexpr Index kSmallShare = 50;            // one vertex in so many: a search on these costs little
-constexpr double kSmoothedHides = 1.0 / 16;  // share of the eigenvalue: smoothed coarsening hides less
+constexpr Index kSmallShare = 50;            // a search on a graph of n / 50 vertices costs little
+constexpr double kSmoothedHides = 1.0 / 16;  // on larger graphs, seek only values below this share
 constexpr double kNearlyEqual = 0.9;         // values above this share of an eigenvalue count as equal to it
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace meshorder {
 constexpr int kStartColumns = 2;
 using StartBlock = VectorBlock<kStartColumns>;
 
-/// Returns options that limit how far vectors on a coarse graph are improved: on the next finer graph,
-/// prolongation limits their accuracy anyway.
+/// Returns options with a low accuracy, for vectors on a coarse graph: prolongation to the next finer graph
+/// limits their accuracy anyway.
 [[nodiscard]] LobpcgOptions coarse_search(TimeLimit limit);
 
 /// Returns start vectors on the finest graph. They begin as exact eigenvectors of the coarsest graph, or as

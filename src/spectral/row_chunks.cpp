@@ -7,7 +7,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kChunks = 16;  // few enough for the bits of a word, enough for the cores of a desktop
+constexpr Index kChunks = 16;  // at most 32, the bits of a set of chunks; enough for the cores of a desktop
 constexpr Index kFewColours = 3;
 
 }  // namespace

@@ -24,7 +24,7 @@ auto in_rising_pieces(Work work) {
   };
 }
 
-/// Does the same with the last piece first.
+/// The same with the last piece first.
 template <class Work>
 auto in_falling_pieces(Work work) {
   return [work](Index begin, Index end) {
@@ -82,7 +82,7 @@ class RowChunks {
     for (const std::vector<Index>& chunks : colours_) run(chunks, work);
   }
 
-  /// Does the same with the last colour first.
+  /// The same with the last colour first.
   template <class Work>
   void for_each_backwards(Work work) const {
     for (std::size_t colour = colours_.size(); colour-- > 0;) run(colours_[colour], work);
