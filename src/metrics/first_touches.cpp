@@ -18,8 +18,8 @@ constexpr Index kWindowsForOne = 16;  // step between windows of small graphs
 constexpr Index kWindows = 8;         // number of windows of large graphs; sometimes there is one more
 
 struct Touches {
-  Index lines = 0;  ///< that were touched for the first time
-  Index jumps = 0;  ///< lines of these that were jumped to
+  Index lines = 0;  ///< number of first touches of a line
+  Index jumps = 0;  ///< number of first touches that are jumps
 
   Touches& operator+=(const Touches& other) {
     lines += other.lines;

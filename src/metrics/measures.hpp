@@ -40,9 +40,9 @@ Offset factor_entries(GraphRef graph, const Permutation& order);
 /// last 32 lines that were touched for the first time. Rows are in the given order, the entries of a row in
 /// the order of their columns.
 ///
-/// If vectors exceed the last cache, a sweep reads every line from memory once; processors prefetch
-/// consecutive lines. On such meshes this share explains how fast plain products and springs run in different
-/// orders; numbers of cache misses do not.
+/// If vectors exceed the last cache, a sweep reads every line from memory once, and processors prefetch
+/// consecutive lines. On meshes of that size, this share explains how fast plain products and springs run in
+/// different orders; numbers of cache misses do not.
 ///
 /// `sampled_jump_share` estimates the share from evenly spread windows of 4,096 rows: one window in 16, but
 /// at most 9 windows.

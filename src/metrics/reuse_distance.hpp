@@ -91,7 +91,7 @@ class ReuseDistance {
     __builtin_prefetch(&far_of_block_[line / kSampledBlock]);
   }
 
-  /// Returns the accesses so far. Every line's first one is cold.
+  /// Returns the accesses so far. The first access to each line is cold.
   [[nodiscard]] const Reuse& reuse() const noexcept { return reuse_; }
 
   /// Returns the number of lines accessed so far.
@@ -109,9 +109,9 @@ class ReuseDistance {
   static constexpr Index kFar = 512;
   static constexpr std::uint32_t kFollowing = 64;
   static constexpr Index kSampledBlock = 11;
-  static constexpr Index kUncounted = 2;  ///< the first lines of a block
+  static constexpr Index kUncounted = 2;  ///< number of lines at the start of a block that do not count
 
-  /// The two numbers are read together and are seldom in this machine's caches, so they are side by side.
+  /// These two numbers are read together and are seldom in this machine's caches: store them side by side.
   struct LastAccess {
     Slot slot = kNever;
     std::uint32_t far = 0;  ///< number of the last far access; cold accesses count too
@@ -153,9 +153,9 @@ class ReuseDistance {
   std::vector<std::uint32_t> marks_in_open_;  ///< for each level, marks in the node that holds the next slot
   Slot slot_count_ = 0;
   Slot next_ = 0;
-  std::uint32_t far_accesses_ = kFollowing;  ///< in a sample only gathered accesses
+  std::uint32_t far_accesses_ = kFollowing;  ///< number of far accesses; in a sample, of gathered ones only
   std::vector<FarOfSample> far_of_line_;     ///< only in a sample
-  std::vector<std::uint32_t> far_of_block_;  ///< only in a sample: gathered accesses
+  std::vector<std::uint32_t> far_of_block_;  ///< only in a sample: number of gathered far accesses
   std::vector<bool> first_access_jumps_;     ///< for each entry of first_accesses_, whether it is a jump
   Reuse reuse_;
   friend class ReuseSample;

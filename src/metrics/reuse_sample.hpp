@@ -94,7 +94,7 @@ class ReuseSample {
 
   void measure_those_that_wait();
 
-  /// Decides by a hash of the block's number, so that no stride of a stream is in step with the sample.
+  /// Decides by a hash of the block's number, so that a stream's stride cannot coincide with the sample's.
   [[nodiscard]] bool sampled(Index block) const noexcept {
     std::uint32_t bits = static_cast<std::uint32_t>(block) * 0x9e3779b1U;
     bits = (bits ^ bits >> 15U) * 0x85ebca6bU;
