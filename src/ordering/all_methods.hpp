@@ -35,15 +35,15 @@ Order hilbert_elements(const ElementInput&, const OrderOptions&);
 std::vector<MethodInfo> built_in_vertex_methods();
 std::vector<MethodInfo> built_in_element_methods();
 
-// Parts that several methods share.
+// Functions that several methods share.
 
 /// Renumbers each chunk of 2,048 vertices of an order breadth first. The search starts from the vertices with
 /// neighbours in earlier chunks, those with the earliest neighbour first.
 ///
 /// A sweep over rows or edges then touches new vertices nearly in the order of their numbers. If vectors
-/// exceed the last cache, it then reads memory forward, as after breadth-first numbering of the whole graph;
-/// processors prefetch that. But each chunk remains the compact region that the order made it. Vertices move
-/// only within their chunk.
+/// exceed the last cache, the sweep reads memory forward, as after breadth-first numbering of the whole
+/// graph, and processors prefetch the data. Vertices move only within their chunk, so each chunk remains the
+/// same compact region.
 ///
 /// O(n + edges · log degree) on all threads; the result does not depend on their number.
 Permutation in_fronts(GraphRef graph, const Permutation& order);

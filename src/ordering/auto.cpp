@@ -39,8 +39,8 @@ Workload parse_workload(std::string_view name) { return parse<Workload>(name); }
 
 namespace {
 
-/// The kind of a graph: a lattice, cut into cells of any shape; another graph with coordinates; another graph
-/// without them.
+/// The kind of a graph. lattice: a lattice, cut into cells of any shape. placed: another graph with
+/// coordinates. bare: another graph without coordinates.
 enum class Kind : std::uint8_t { lattice, placed, bare };
 
 /// A condition under which a method is chosen; the first rule that fits decides.

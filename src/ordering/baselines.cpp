@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// The reference orders: the file's, and a random one.
+// The reference orders: the order of the file, and a random order.
 #include "base/random.hpp"
 #include "base/run_scope.hpp"
 #include "ordering/all_methods.hpp"

@@ -14,7 +14,7 @@
 namespace meshorder {
 namespace {
 
-/// The vertices group after group; within a group in their old order.
+/// The vertices sorted by group; within a group in their old order.
 struct Sorted {
   std::vector<Index> vertices;
   std::vector<Index> starts;  ///< groups + 1

@@ -18,7 +18,7 @@ namespace meshorder {
 std::vector<Index> dense_groups(const IndexView& groups, Index size, const char* what, Index& count);
 
 /// Orders the vertices group after group, each group by the method on the graph of its own vertices, so that
-/// neighbours within a group stay near each other in memory. `auto` chooses once, for the whole graph.
+/// neighbours within a group stay near each other in memory. `auto` chooses one method for the whole graph.
 /// Reports of eigensolvers are in the order of the groups. O(n + edges) and the cost of the method.
 ///
 /// @param group_of  for each vertex the number of its group, 0 … groups − 1

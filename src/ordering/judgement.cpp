@@ -13,8 +13,8 @@
 namespace meshorder {
 namespace {
 
-constexpr double kGain = 0.98;            // a new order is worth it up to this share of the old figure
-constexpr double kTolerated = 1.05;       // largest share of the old figure that is tolerated
+constexpr double kGain = 0.98;            // largest new figure, as a share of the old one, that is a gain
+constexpr double kTolerated = 1.05;       // largest new figure, as a share of the old one, that is tolerated
 constexpr Index kBeyondCaches = 100'000;  // vertices: on smaller meshes all good orders are within 3 %
 constexpr double kNotable = 0.1;          // share of the lines, worth 2 to 4 % of the time of a product
 constexpr double kGainOnGpu =

@@ -27,7 +27,7 @@ struct BuiltInElementMethod {
   bool needs_points = false;
 };
 
-/// Orders by a method, then breadth first within its chunks.
+/// Orders by a method, then renumbers the chunks of that order breadth first: see `in_fronts`.
 template <Order (*Method)(const VertexInput&, const OrderOptions&)>
 Order then_fronts(const VertexInput& input, const OrderOptions& options) {
   Order result = Method(input, options);

@@ -21,8 +21,8 @@ struct VertexInput {
   PointsView points = {};                ///< one for each vertex, or none
   std::span<const double> weights = {};  ///< one for each neighbour, or none
   /// If the graph is a part of a larger one: for each vertex, the number of its neighbours in earlier parts
-  /// minus the number in later parts. Otherwise empty. `spectral` chooses the direction of its cuts by it;
-  /// the other methods ignore it.
+  /// minus the number in later parts. Otherwise empty. Only `spectral` uses the pull: to choose the direction
+  /// of its cuts.
   std::span<const float> pull = {};
 };
 
@@ -35,7 +35,7 @@ struct ElementInput {
 };
 
 /// Orders vertices by the method of that name, built in or registered. Built-in methods other than `original`
-/// put vertices without neighbours last, in their old order. Polls the call's progress.
+/// put vertices without neighbours last, in their old order. Calls `poll`.
 ///
 /// @throws InvalidArgument for an unknown name (the message lists the known ones), for a geometric method
 ///         without coordinates of all vertices, and for a registered method that returns an order of

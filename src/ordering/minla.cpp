@@ -52,10 +52,10 @@ std::vector<Index> expanded(const std::vector<Index>& coarse_order, const std::v
   return result;
 }
 
-/// Replaces the order. A new order is found on the coarser graph, where large parts move at once, and then
-/// improved by moving single vertices. An order that is better on the coarser graph may be worse here, so
-/// this is done twice, the second time with groups that follow the first new order. Keeps the better of the
-/// two new orders, even if its span is larger than that of the given order.
+/// Replaces the order. Finds a new order on the coarser graph, where large parts move at once, and improves
+/// it by moving single vertices. An order that is better on the coarser graph may be worse on this graph, so
+/// the search runs twice; the second time, the groups follow the first new order. Keeps the better of the two
+/// new orders, even if its span is larger than that of the given order.
 void search(const ArrangementGraph& graph, TimeLimit limit, std::vector<Index>& order) {
   Offset least = std::numeric_limits<Offset>::max();
   for (int visit = 0; visit < kVisits; ++visit) {

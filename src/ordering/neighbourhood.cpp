@@ -24,8 +24,8 @@ constexpr Index kOneOf = 16;
 /// Smaller graphs and meshes are examined whole.
 constexpr Index kAllOf = 4096;
 
-/// Returns one of every 16 numbers below n, ascending. A hash chooses which one, so that the sample is not in
-/// step with a lattice.
+/// Returns one of every 16 numbers below n, ascending; all numbers for n < `kAllOf`. A hash chooses each one,
+/// so that the sample does not follow the period of a lattice.
 std::vector<Index> sample_of(Index n) {
   std::vector<Index> sample(static_cast<std::size_t>(n < kAllOf ? n : chunk_count(n, kOneOf)));
   for (Index k = 0; k < index_size(sample); ++k) {

@@ -24,7 +24,7 @@ class Neighbourhood : public Polymorphic {
   [[nodiscard]] virtual double span_log2(std::span<const Index> place_of) const = 0;
   /// Returns the largest `span_log2` at which an order is still kept.
   [[nodiscard]] virtual double most_span(double fresh, double slack) const { return fresh * (1 + slack); }
-  /// The reasons of an update: `span_log2` exceeds `most_span`, or it does not.
+  /// Words for the reason of an update: `too_far` if `span_log2` exceeds `most_span`, else `near_enough`.
   [[nodiscard]] virtual std::string_view too_far() const {
     return "neighbours have come apart: mean log2 span";
   }
@@ -54,7 +54,7 @@ class GraphNeighbourhood : public Neighbourhood {
   const PointsView& points_;
 };
 
-/// The vertices of a mesh. Refers to it, and builds its graph when an order is computed.
+/// The vertices of a mesh, which must outlive this object. Builds the graph only to compute an order.
 class CellNeighbourhood : public Neighbourhood {
  public:
   CellNeighbourhood(const CellArrays& cells, const PointsView& points) : cells_(cells), points_(points) {}
@@ -74,7 +74,7 @@ class CellNeighbourhood : public Neighbourhood {
   std::optional<CsrGraph> graph_;
 };
 
-/// Points alone, whose ideal place is their place on a curve.
+/// Points without a graph; the ideal place of a point is its place on a curve.
 class PointNeighbourhood : public Neighbourhood {
  public:
   explicit PointNeighbourhood(const PointsView& points) : points_(points) {}

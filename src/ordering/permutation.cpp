@@ -64,7 +64,7 @@ std::vector<Index> inverted(std::span<const Index> map) {
       }
     });
     if (!bijection) return;
-    // if several entries are equal, all but one fail
+    // of several equal entries, all but one fail this test
     for_each_range(n, kEntries, [&](Offset begin, Offset end) {
       for (Offset i = begin; i < end; ++i) {
         if (inverse[map[i]] != i) {

@@ -21,8 +21,8 @@ inline namespace v0_3 {
 namespace {
 
 /// The tolerance of a warm order as a multiple of the tolerance of a fresh order. At this tolerance, the best
-/// combination of the last vector and the vectors of coarser graphs brings neighbours equally near, without
-/// an iteration on the whole graph.
+/// combination of the last vector and the vectors of coarser graphs brings neighbours as near as a fresh
+/// order does, without an iteration on the whole graph.
 constexpr double kWarmTolerance = 30;
 
 /// Returns the start vector in the numbering of this update; 0 for new vertices.

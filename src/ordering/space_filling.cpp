@@ -121,7 +121,7 @@ struct CurveState {
   constexpr bool operator==(const CurveState&) const = default;
 };
 
-/// A step into a part of a cube: a half, quarter or eighth, or such a part of a part. It consists of the
+/// A step into a part of a cube: a half, quarter or eighth, or a part of such a part. It has two numbers: the
 /// part's number along the curve in the cube, and the number of the part's state.
 class CurveStep {
  public:
@@ -185,7 +185,7 @@ constexpr auto curve_steps() {
 
 constexpr unsigned kScalesAtOnce = 3;
 
-/// Returns the same steps for `kScalesAtOnce` scales at once.
+/// Like `curve_steps`, for `kScalesAtOnce` scales at once.
 template <unsigned Axes>
 auto curve_strides() {
   constexpr auto kSteps = curve_steps<Axes>();
@@ -249,8 +249,8 @@ namespace {
 constexpr int kFirstBits = 30;  // leading bits of a point's number along a curve; few points share them all
 
 /// Sorts points by their number along a curve, which `key(cell, axes, scales)` returns; ties by place. Sorts
-/// first by the number that only the first scales give: only points that share it need the number of all
-/// scales. O(n) if few points share it.
+/// first by the number of the first scales. Only points with equal numbers need the number of all scales.
+/// O(n) if few numbers are equal.
 template <class Key>
 Permutation sorted_along(const PointsView& points, const Key& key) {
   using Entry = ValuedItem<std::uint32_t>;

@@ -49,7 +49,7 @@ class Lattice {
   std::array<int, 3> used_{};  ///< the axes along which the box extends
   Point low_;
   double shrink_ = 1;  ///< 0.5 if the box's extent exceeds the largest double, else 1
-  double last_ = 0;    ///< the last cell along an axis
+  double last_ = 0;    ///< largest coordinate of a cell, 2^bits − 1
   double extent_ = 0;  ///< length of the longest axis: one scale for all, so that cells are cubes
 };
 

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // Recursive spectral bisection (Pothen, Simon, Liou: Partitioning Sparse Matrices with Eigenvectors of
-// Graphs, 1990) as a linear order. A cut can be taken in two directions; the one is taken that suits the
+// Graphs, 1990) as a linear order. Either half of a cut can come first; the choice brings vertices near their
 // neighbours outside the piece (terminal propagation: Dunlop and Kernighan 1985).
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
@@ -17,10 +17,10 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kSmall = 4000;  // up to here smoothed distances cut as well as Fiedler vectors, in less time
+constexpr Index kSmall = 4000;  // on smaller pieces smoothed distances cut as well as Fiedler vectors, faster
 constexpr double kTolerance = 1;  // a rough vector suffices for the place of a cut
 constexpr int kMaxIterations = 30;
-constexpr double kThickness = 0.8;  // of slabs: thinner ones take less time, but lengthen spans
+constexpr double kThickness = 0.8;  // least thickness of slabs, see `cut`: less saves time, lengthens spans
 
 /// A part of a component that is ordered by itself.
 struct Piece {
@@ -102,8 +102,8 @@ struct Slabs {
   }
 };
 
-/// Cuts into two halves, or into more slabs as long as each is at least about 0.7 times as thick as it is
-/// wide: one vector then replaces several successive cuts.
+/// Cuts the sequence into two halves; into more slabs if each is then at least about 0.7 times as thick as it
+/// is wide. One vector then replaces several successive cuts.
 Slabs cut(GraphRef graph, std::vector<Index> sequence) {
   Slabs slabs;
   const double least = std::pow(kThickness * mean_front(graph, sequence), 1.5);
