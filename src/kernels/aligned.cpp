@@ -19,8 +19,8 @@ constexpr std::size_t kMinPaged = kHugePage / 2;
 // malloc places all blocks of about this size or larger at the same offset in a page
 constexpr std::size_t kMinColoured = std::size_t{64} << 10;
 
-// The number of places in 4096 bytes such that all are at least kApart from each other, also across the end
-// of a page.
+// Large blocks begin at one of this many offsets in a page of 4096 bytes. The offsets are at least kApart
+// from each other, modulo 4096.
 constexpr std::size_t kColours = 3;
 constexpr std::size_t kBetweenColours = 4096 / kColours / kCacheLine * kCacheLine;
 static_assert(kBetweenColours >= kApart);
@@ -41,8 +41,8 @@ std::size_t next_colour() {
 
 #if defined(__linux__)
 
-/// Returns newly mapped memory that begins at a multiple of kHugePage; the heap would reuse memory on small
-/// pages. Asks for large pages, but the system may give ordinary ones.
+/// Returns newly mapped memory that begins at a multiple of kHugePage; the heap might return memory on small
+/// pages. Asks the system for large pages; the system may give ordinary ones.
 void* allocate_pages(std::size_t bytes) {
   const std::size_t mapped = bytes + kHugePage;
   void* const map = mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

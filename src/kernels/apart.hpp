@@ -11,11 +11,11 @@ namespace meshorder {
 
 /// The least distance, modulo 4096 bytes, of two arrays that a kernel reads and adds to by the same index.
 ///
-/// Processors compare a load with earlier stores first by the low 12 bits of the addresses, and many let the
-/// load wait if these agree. A kernel that reads positions[v] and adds to forces[v] would wait for the stores
-/// to all vertices near v if both arrays began at a page: springs took 1.4 to 2.2 times as long on an Intel
-/// Xeon (docs/evidence/benchmarks.md). Some 30 vertices of 32 bytes each are near v, so that a distance of 64
-/// bytes is not enough.
+/// Processors first compare the low 12 bits of a load's address with those of earlier stores; on many, the
+/// load waits if the bits agree. If positions and forces both began at a page, a kernel that reads
+/// positions[v] and adds to forces[v] would wait for the stores to all vertices near v: springs took 1.4 to
+/// 2.2 times as long on an Intel Xeon (docs/evidence/benchmarks.md). Some 30 vertices of 32 bytes each are
+/// near v, so a distance of 64 bytes is not enough.
 inline constexpr std::size_t kApart = 1088;
 
 /// Returns whether the addresses differ by less than kApart modulo 4096.

@@ -61,7 +61,7 @@ AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix) {
 
 OwnedBlocks owned_blocks(const RestShapes& rest, const AssemblyMap& map, const BlockCsr& matrix,
                          const OwnedBatches& share, Index part) {
-  // 16 blocks, the most that a simplex has, and 2 blocks that keep shares on separate cache lines
+  // a simplex has at most 16 blocks; 2 more blocks keep the shares on separate cache lines
   constexpr Offset kSpareBlocks = 16 + 2;
   const Index corners = rest.dimension + 1;
   const Offset first_spare = matrix.block_count() + 2 + kSpareBlocks * part;

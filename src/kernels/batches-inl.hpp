@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// Given instead of a Tangent if only forces are computed.
+/// Takes the place of a Tangent if only forces are computed.
 struct NoTangent {};
 
 template <int D>

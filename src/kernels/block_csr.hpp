@@ -55,7 +55,7 @@ template <class Value>
 void multiply_rows(const BlockCsrOf<Value>& matrix, std::span<const double> x, std::span<double> y,
                    Index begin_row, Index end_row);
 
-/// As above; returns the part of xᵀA x that these rows contribute.
+/// Like `multiply_rows`; returns the part of xᵀA x that these rows contribute.
 template <class Value>
 double multiply_rows_dot(const BlockCsrOf<Value>& matrix, std::span<const double> x, std::span<double> y,
                          Index begin_row, Index end_row);

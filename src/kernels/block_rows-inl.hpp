@@ -31,8 +31,8 @@ struct RowSums {
 
   template <class Value>
   HWY_INLINE void add(const Value* block, const double* p) {
-    // p₀ p₁ p₂ p₂, because nothing may be read beyond p₂; loads as wide as the stores of subtract_from do not
-    // stall
+    // p₀ p₁ p₂ p₂: nothing may be read beyond p₂. The loads are as wide as the stores of subtract_from: wider
+    // loads would wait for these stores
     const hn::FixedTag<double, 2> two;
     const hn::FixedTag<double, 4> four;
     const auto p0122 = hn::Combine(four, hn::Set(two, p[2]), hn::LoadU(two, p));
@@ -78,7 +78,7 @@ struct RowSums {
   }
 };
 #else
-/// As above, without vectors: vectors of two lanes would gain nothing.
+/// The same without vectors: vectors of two lanes would gain nothing.
 struct RowSums {
   double s[9] = {};
 

@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// Lower bound for the sum of two singular values in a tangent: the Hessian is infinite where a sum is 0.
-/// Only nearly collapsed elements reach this bound.
+/// Lower bound for the sum of two singular values in a tangent: the Hessian is infinite if a sum is 0. Only
+/// nearly collapsed elements have smaller sums.
 inline constexpr double kMinSum = 1e-6;
 
 /// Corotational linear elasticity: P = 2μ (F − R) + λ tr(RᵀF − I) R.

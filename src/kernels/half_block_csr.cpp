@@ -48,7 +48,7 @@ class HalfRow {
     row0_ = hn::MulAdd(block0, factors, row0_);
     row1_ = hn::MulAdd(block1, factors, row1_);
     row2_ = hn::MulAdd(block2, factors, row2_);
-    // computed before the sum is loaded, so that only one addition waits for the preceding store to it
+    // computed before `column_sum` is loaded: then only one addition waits for the last store to `column_sum`
     const auto column = hn::MulAdd(block2, p2_, hn::MulAdd(block1, p1_, hn::Mul(block0, p0_)));
     hn::Store(hn::Add(hn::Load(d, column_sum), column), d, column_sum);
   }
@@ -88,7 +88,7 @@ class HalfRow {
   hn::Vec<Tag> row2_ = hn::Zero(Tag());
 };
 #else
-/// As above, without vectors: vectors of two lanes would gain nothing.
+/// The same without vectors: vectors of two lanes would gain nothing.
 class HalfRow {
  public:
   HWY_INLINE explicit HalfRow(const double* p) : p_(p) {}
@@ -210,7 +210,7 @@ Offset blocks_between(const BlockCsr& matrix, Index begin, Index end) {
   return count;
 }
 
-/// How many of a row's stored blocks are used only in this row (`alone`), and how many in two rows (`both`).
+/// Numbers of a row's stored blocks that are used only in this row (`alone`) and in two rows (`both`).
 struct RowCounts {
   Offset alone = 0, both = 0;
 };

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// The kernels of one elastic law for all instruction sets. A law's .cpp file includes this at its end, once
-// for each instruction set. Before that it defines MESHORDER_LAW_KERNELS, the function of pass.hpp that
-// returns these kernels, and in meshorder::HWY_NAMESPACE a struct LawOfFile with
+// The kernels of one elastic law for all instruction sets. A law's .cpp file includes this file at its end,
+// once for each instruction set. Before the include it defines MESHORDER_LAW_KERNELS, the name of the
+// function of pass.hpp that returns these kernels, and in meshorder::HWY_NAMESPACE a struct LawOfFile with
 //   Law<D, Lanes>, ExactTangent<D, Lanes>, ApproximateTangent<D, Lanes>: see add_batch;
 //   kVolumesOnly: whether the law supports only tetrahedra.
 // A law without an approximate tangent sets ApproximateTangent to its ExactTangent.

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <span>
 
-// Kernels as ordinary programs write them: one loop, no prefetching, no blocking, no threads. Their times
+// Kernels as ordinary programs write them: one loop on one thread, no prefetching, no blocking. Their times
 // show how much most users gain by an order of a mesh. The other kernels in this folder are tuned, and run
 // about equally fast in all good orders.
 //
@@ -16,9 +16,9 @@
 // entries to the values in the output array.
 namespace meshorder::plain {
 
-/// The vertices that a thread adds to: all of them, or a range. When threads share a loop over elements or
-/// edges, each thread computes the elements or edges that touch a vertex of its range, and adds only to
-/// vertices of its range.
+/// `AllVertices` and `VertexRange` are the vertices that a thread adds to. When threads share a loop over
+/// elements or edges, each thread computes the elements or edges that touch a vertex of its range, and adds
+/// only to vertices of its range.
 struct AllVertices {
   [[nodiscard]] static constexpr bool has(Index /*v*/) { return true; }
 };
@@ -116,8 +116,8 @@ Gradients<Corners> gradients(const Index* simplex, std::span<const double> posit
   return g;
 }
 
-/// Adds the forces of a pressure of 1 that expands the elements (tetrahedra, triangles or lines, by Corners):
-/// the derivative of the volume, area or length, element by element.
+/// Adds the forces of a pressure of 1 that expands the elements: the derivative of the volume, area or length
+/// of each element. `Corners` is 4 for tetrahedra, 3 for triangles, 2 for lines.
 template <int Corners, class Owned = AllVertices>
 void press(std::span<const Index> simplices, std::span<const double> positions, std::span<double> forces,
            const Owned& owned = {}) {

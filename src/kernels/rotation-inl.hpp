@@ -90,8 +90,8 @@ struct RotationTerms {
   typename Lanes::Value trace;        ///< tr RᵀF: the sum of the signed singular values
 };
 
-/// Computes the closest rotations by a formula, for matrices whose closest rotation is well separated from
-/// others. Returns false, with unusable results, unless all matrices are such matrices.
+/// Computes the closest rotations by a formula. Returns false, with unusable results, unless every matrix has
+/// a closest rotation that is well separated from others.
 ///
 /// The largest eigenvalue of N is λ = tr S, the largest root of λ⁴ − 2aλ² − 8dλ + a² − 4b with a = ‖F‖²,
 /// b = ‖cof F‖² and d = det F. Halley's method decreases to it from √3 ‖F‖ without overshooting, since all

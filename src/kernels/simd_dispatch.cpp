@@ -12,7 +12,7 @@ std::atomic<std::int64_t> allowed{~std::int64_t{0}};
 std::int64_t found_targets() {
   std::int64_t found = HWY_STATIC_TARGET;
 #if HWY_ARCH_X86
-  // what the attributes of Highway's set_macros-inl.h enable; every processor with AVX2 and FMA has F16C
+  // the features that the attributes of Highway's set_macros-inl.h enable; AVX2 and FMA imply F16C
   const bool has_sse4 = __builtin_cpu_supports("sse4.2") != 0 && __builtin_cpu_supports("pclmul") != 0 &&
                         __builtin_cpu_supports("aes") != 0;
   const bool has_avx2 = has_sse4 && __builtin_cpu_supports("avx2") != 0 &&

@@ -19,7 +19,7 @@ namespace meshorder {
 /// compiler may use anyway.
 std::int64_t simd_targets();
 
-/// Restricts `simd_targets` to these, for tests; 0: no restriction. Call it only while no kernel runs.
+/// Restricts `simd_targets` to `targets`, for tests; 0: no restriction. Call it only while no kernel runs.
 void limit_simd_targets(std::int64_t targets);
 
 /// Returns Highway's name of the instruction set that the kernels use on this processor: "AVX3", "AVX2",

@@ -36,8 +36,8 @@ HWY_INLINE void add_batch(const double* rest_length, const Index* ends, const In
   }
 }
 
-/// Prefetches data of later batches that are read from front to back: springs, and the vertices after the
-/// larger ends of this batch (springs are sorted by their larger ends).
+/// Prefetches the data of later batches in the arrays that are read from front to back: the springs, and the
+/// vertices after the larger ends of this batch (springs are sorted by their larger ends).
 HWY_INLINE void fetch_streams(const double* rest_length, const Index* ends, const double* positions,
                               const double* forces) {
   constexpr Offset kBatches = 16;

@@ -18,8 +18,8 @@ struct Springs {
 };
 
 /// Returns a spring for every edge of the graph, from its smaller to its larger end, at rest at the given
-/// points. Springs are sorted by the larger end and then the smaller, as `lexmax` sorts elements, so that the
-/// first visits of vertices that have smaller neighbours are in the order of memory. O(n + edges).
+/// points. Springs are sorted by the larger end and then the smaller end, as `lexmax` sorts elements. Larger
+/// ends are then first visited in the order of memory. O(n + edges).
 Springs springs_on_edges(const CsrGraph& graph, std::span<const Point> points);
 
 /// Returns the energy Σ ½ k (‖d‖ − ℓ₀)² of springs of stiffness k, d = x_b − x_a. O(springs).
