@@ -65,8 +65,8 @@ AccessStream::Array AccessStream::place(Offset bytes) {
 
 namespace {
 
-/// Predicts the lengths of loops and counts the wrong predictions. Models a processor that remembers, for
-/// each of some thousands of sequences of eight lengths, the length that followed.
+/// Predicts the lengths of loops and counts the wrong predictions. Models a processor that remembers some
+/// thousands of sequences of eight lengths, and for each sequence the length that followed it.
 class LoopLengths {
  public:
   void add(Index length) {
@@ -150,7 +150,7 @@ struct PolledSample {
 };
 
 Reuse followed(const AccessStream& stream, Kernel kernel, int halvings) {
-  // a product gathers from few lines and is fast to simulate, so it takes two halvings fewer
+  // a product gathers from few lines and is fast to simulate, so its sample is larger by two halvings
   constexpr int kOfProduct = 2;
   ReuseSample reuse(stream.line_count(),
                     kernel == Kernel::spmv ? std::max(0, halvings - kOfProduct) : halvings);

@@ -59,7 +59,6 @@ class AccessStream {
   }
 
  private:
-  /// An array in memory.
   struct Array {
     Offset first_line = 0;
     Offset bytes = 0;
@@ -84,7 +83,7 @@ class AccessStream {
     }
   };
 
-  /// Reads an array from front to back: each line is touched when its first byte is reached.
+  /// Reads an array from front to back, and touches each line when it reaches the line's first byte.
   class Reader {
    public:
     explicit Reader(const Array& array) : next_line_(array.first_line) {}

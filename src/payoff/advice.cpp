@@ -88,8 +88,8 @@ Timings raced(const std::vector<KernelInput>& orders, const AdviceOptions& optio
                             for_seconds(kSeconds * static_cast<double>(orders.size())));
 }
 
-/// Returns the options of the orders to compute. Without `options.methods` these are `auto` for all kernels
-/// and, if `auto` chooses another method for springs, `auto` for springs.
+/// Returns the options of each order to compute. Without `options.methods`, the orders are `auto` for all
+/// kernels and, if `auto` chooses another method for springs, `auto` for springs.
 std::vector<ReorderOptions> asked_for(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options) {
   std::vector<ReorderOptions> result;
   for (const MeshMethods& methods : options.methods) {
@@ -130,7 +130,7 @@ double cost_for(Workload workload, const Advice& advice, const OrderCosts& costs
   return sum / kernels;
 }
 
-/// Keeps the first candidate and the best of the others, `most` candidates in all, in their present sequence.
+/// Keeps `most` candidates in their present sequence: the first one and the best of the others.
 void keep_best(Advice& advice, Orders& orders, Workload workload, std::size_t most) {
   std::vector<std::size_t> places(advice.candidates.size());
   std::iota(places.begin(), places.end(), 0);

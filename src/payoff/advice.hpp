@@ -32,10 +32,10 @@ struct AdviceOptions {
   std::vector<MeshMethods> methods = {};  ///< as in `PayoffOptions`
   MachineChoice machine = choose_machine();
   KernelSet kernels = KernelSet::plain;  ///< tuned kernels can only be measured
-  int threads = 1;                       ///< that share each run; for predictions: `machine.model.threads`
+  int threads = 1;                       ///< threads that share a run; to predict, `machine.model.threads`
   Caches caches = {};                    ///< caches to predict for; empty: those of the machine
   OrderOptions ordering = {};
-  std::string format = {};   ///< in which the mesh will be written; empty: its own
+  std::string format = {};   ///< format in which the mesh will be written; empty: `Mesh::format`
   double graph_seconds = 0;  ///< time that building the vertex graph took
   bool predict = true;
   bool describe = true;         ///< set the spans and the pattern of all candidates
@@ -61,9 +61,9 @@ struct AdviceOptions {
 Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options = {});
 
 /// Returns the factor up to which two times of a kernel count as equal. It is 1.05 for measured times and for
-/// predictions by the machine's own calibration. By the costs of another machine it is 1.1, and 1.25 for
-/// SpMV: measurements did not confirm smaller predicted differences (docs/prediction.md). It is larger if
-/// repeated timings of one problem on this machine differ by more.
+/// predictions by the machine's own calibration. For predictions by the costs of another machine it is 1.1,
+/// and 1.25 for SpMV: measurements did not confirm smaller predicted differences (docs/prediction.md). The
+/// factor is larger if repeated timings of one problem on this machine differ by more.
 double same_time(const Advice& advice, Kernel kernel);
 
 /// Returns the best candidate for each kernel, in the order of kKernels. If there is nothing to gain, as for
@@ -77,7 +77,7 @@ double factor_for(Workload workload, const Advice& advice, std::size_t candidate
 /// Returns the place of the candidate in which the kernels of a workload (one or all) run fastest; nothing if
 /// no candidate is faster than the mesh's own order by more than same_time. The first candidate wins unless
 /// another candidate is faster than it by more than same_time. For all kernels, geometric means are compared.
-/// Throws InvalidArgument for `bandwidth` and `fill`, which are not about times of kernels.
+/// Throws InvalidArgument for workloads without kernels, such as `bandwidth` and `fill`.
 std::optional<std::size_t> winner_for(Workload workload, const Advice& advice);
 
 /// Returns the milliseconds that a candidate saves in each time step (see runs_in_time_step), negative if it
@@ -99,7 +99,7 @@ std::optional<std::size_t> advised(const Advice& advice);
 /// there is nothing to gain or the size of the gain is in doubt.
 std::optional<double> certain_gain(const Advice& advice);
 
-/// Returns the place in kKernels of the kernel that a workload is about; kKernels.size() if it is about all
+/// Returns the place in kKernels of the workload's only kernel; kKernels.size() if the workload has all
 /// kernels or none.
 std::size_t kernel_of(Workload workload);
 
@@ -108,7 +108,7 @@ inline bool is_told_by_kernels(Workload workload) {
   return workload == Workload::all || kernel_of(workload) < kKernels.size();
 }
 
-/// Returns the workload if it is about one kernel of the advice, else `all`.
+/// Returns the workload if it has exactly one kernel and the advice covers this kernel; else `all`.
 Workload told_by_kernels(const Advice& advice, Workload workload);
 
 /// Returns the methods of a candidate: "hilbert", or "hilbert/original" if its elements are not in the

@@ -122,7 +122,7 @@ Band ideal_band(SimplicesRef simplices, const CsrGraph& graph) {
   Band band;
   band.mesh.points = helix(n);
   const Index joined = joined_vertices(graph);
-  // at most as many edges per vertex as a lattice cut into simplices has: further edges belong to no simplex
+  // at most as many edges per vertex as in a lattice that is cut into simplices; `fill` adds further edges
   const auto per_vertex = static_cast<Index>(graph.edge_count() / std::max<Index>(1, joined));
   const Index k = std::clamp<Index>(per_vertex, d, std::max<Index>(d, (Index{1} << d) - 1));
   band.mesh.cells = streamed_simplices(d, d == 0 ? 0 : simplices.size(), corners, k);

@@ -24,8 +24,8 @@ struct Band {
 /// vertices without neighbours is that of the mesh; they come last. The points lie on a helix, so that no
 /// simplex is flat. O(n + edges + cells).
 ///
-/// @param simplices  that the mesh is cut into
-/// @param graph      its vertex graph
+/// @param simplices  the simplices into which the mesh is cut
+/// @param graph      the vertex graph of the mesh
 Band ideal_band(SimplicesRef simplices, const CsrGraph& graph);
 
 /// Returns a pattern with as many rows and entries as `pattern`. The entries are spread evenly over the rows

@@ -39,10 +39,10 @@ struct Runs {
   std::vector<Steadiness> steadiness = {};  ///< of each measurement
 };
 
-/// The reuse of larger lattices is estimated, from a larger share of their lines than for meshes.
+/// Returns the `halvings` for a lattice: 0 for small ones. For larger ones the reuse is estimated.
 int halvings_for_lattice(SimplicesRef simplices) { return simplices.size() < 50'000 ? 0 : 3; }
 
-/// How long orders are timed.
+/// Limits on the timing of orders.
 struct Rounds {
   double seconds = 0;
   int least = 3;  ///< least number of rounds, however long they take
@@ -93,7 +93,7 @@ struct Prepared {
     for (std::size_t i = first; i < orders.size(); ++i) reuse[i] = reuse[place_of(i)];
   }
 
-  /// From now on, this many threads share each run of the kernels.
+  /// Lets `threads` threads share each later run of the kernels.
   void share(int threads) {
     for_each_chunk(index_size(benches), 1,
                    [&](Index i, Index /*begin*/, Index /*end*/) { benches[i]->share(threads); });
@@ -143,7 +143,7 @@ Steadiness steadiness_of(std::span<const Steadiness> measurements) {
   return result;
 }
 
-/// Sizes that differ by less than this factor are taken for one cache.
+/// Two sizes that differ by less than this factor count as the same cache.
 constexpr double kSameCache = 1.6;
 
 /// Returns the caches that costs belong to. A cache that was found and is within that factor of a reported
@@ -335,9 +335,9 @@ Latencies latencies_behind(const FoundCaches& found, const Caches& caches) {
 FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies,
                       const KernelCosts* like) {
   const Rows shares = shares_of(runs, caches);
-  // There are two more unknowns. The first is the share of its latency that a jump costs, in units of kShare.
-  // An equation for each jump cost, with an eightieth of the weight of a run, says that the cost is that
-  // share of the latency.
+  // Besides the costs there are two unknowns. The first is the cost of a jump as a share of its latency, in
+  // units of kShare. An equation for each jump cost, with an eightieth of the weight of a run, sets the cost
+  // to that share of the latency.
   constexpr double kShare = 0.1;
   constexpr double kWeight = 0.0125;
   // The weight of the error that all runs of a lattice have in common.

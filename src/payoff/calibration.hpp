@@ -34,21 +34,21 @@ struct Calibration {
   std::string processor;
   std::string build;  ///< version, compiler and options of the program
   std::string date;   ///< "2026-11-22", in UTC
-  Caches reported;    ///< by the system; empty if it reports no caches
+  Caches reported;    ///< caches that the system reports; empty if it reports none
   FoundCaches found;
   int threads = 1;            ///< number of threads with which `all_threads` was measured
   double read_bandwidth = 0;  ///< GB/s, one thread
   double read_bandwidth_all = 0;
   Steadiness steadiness;
-  double seconds = 0;  ///< that the calibration took
+  double seconds = 0;  ///< duration of the calibration
 
   bool operator==(const Calibration&) const = default;
 };
 
 /// How thoroughly a machine is measured.
 struct CalibrationEffort {
-  double seconds = 16;  ///< no repetition begins that is expected to end later; first, each step is done once
-  Offset probed = Offset{256} << 20;  ///< largest buffer of loads, bytes
+  double seconds = 16;  ///< each step is done once; repetitions begin only if they should end in time
+  Offset probed = Offset{256} << 20;  ///< size of the largest buffer that is read, bytes
   Index vertices = 200'000;           ///< of the largest lattice
 };
 
@@ -61,7 +61,7 @@ CalibrationEffort effort_of(double seconds);
 /// the misses of each level vary independently. Kernels run on the calling thread, timed by its processor
 /// time, and then on all threads, timed by elapsed time; the least of several rounds counts. Costs are fitted
 /// by non-negative least squares of relative errors. For products with the matrix, costs on all threads are
-/// the costs on one thread times one factor. Reports its progress and polls.
+/// the costs on one thread times one factor. Calls `report` and `poll`.
 Calibration measure_machine(const CalibrationEffort& effort = {});
 
 /// A run of a kernel: its reuse and its time. On several threads the time is divided by `times_computed`.
@@ -104,7 +104,7 @@ FittedCosts scale_costs(std::span<const TimedReuse> runs, const KernelCosts& cos
 /// The result of a quick check of a machine against its calibration.
 struct Recheck {
   std::array<double, kKernels.size()> ratio{};  ///< time now / predicted time, by kernel
-  std::string moved;                            ///< why the calibration should be done anew, or empty
+  std::string moved;                            ///< reason to calibrate again; empty if there is none
   std::string doubt;                            ///< see reason_to_doubt
 };
 

@@ -36,7 +36,7 @@ KernelCosts as_costs(const CostRow& row);
 /// Costs of the kernels on a machine.
 struct CostModel {
   std::string machine;  ///< in words, "2-core Zen 5, 48 KB L1, 1 MB L2, 32 MB L3"
-  Caches caches;        ///< to which the costs belong
+  Caches caches;        ///< caches of that machine, to which the costs refer
   /// Number of threads that share each run (KernelBench). With several, the costs predict the elapsed time
   /// from the accesses that one thread would make; the prediction is then multiplied by `times_computed`.
   int threads = 1;
@@ -68,7 +68,7 @@ const CostModel& zen3_costs();
 /// rather than the milliseconds. O(levels · bins of the histograms). Throws InvalidArgument without caches.
 double predicted_ms(const RunReuse& reuse, const Caches& caches, const CostModel& model = zen3_costs());
 
-/// As above, for all kernels.
+/// The same for all kernels.
 KernelMilliseconds predicted_ms(const KernelReuse& reuse, const Caches& caches,
                                 const CostModel& model = zen3_costs());
 

@@ -74,8 +74,8 @@ class KernelBench : public Polymorphic {
   /// Returns the memory held, in bytes.
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 
-  /// Returns the share of elements that are computed in addition, because threads overlap: 0 on one thread,
-  /// 0.02 if every fiftieth element is computed twice.
+  /// Returns the number of repeated computations of elements divided by the number of elements: 0 on one
+  /// thread, 0.02 if two threads compute every fiftieth element.
   [[nodiscard]] virtual double redundancy() const = 0;
 
  private:

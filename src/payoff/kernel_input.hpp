@@ -30,8 +30,8 @@ class KernelInput {
   [[nodiscard]] SimplicesRef simplices() const noexcept { return simplices_; }
   /// Returns the entries of a matrix; nothing for a mesh.
   [[nodiscard]] const EntryPattern& pattern() const noexcept { return pattern_; }
-  /// Returns the seconds that `moved` took for points and simplices, or for entries. A program that reorders
-  /// its mesh spends this time, too.
+  /// Returns the seconds that `moved` took to move points and simplices, or entries: a part of the cost of
+  /// an order.
   [[nodiscard]] double seconds_to_move() const noexcept { return seconds_to_move_; }
 
  private:

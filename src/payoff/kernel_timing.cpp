@@ -55,8 +55,8 @@ double sample(KernelBench& bench, Kernel kernel, const Plan& plan, const TimingO
 Plan plan_samples(KernelBench& bench, Kernel kernel, const TimingOptions& options) {
   constexpr double kMostRepeats = 1e5;
   constexpr std::size_t kMostRuns = 12;
-  // a kernel that runs longer than this many samples streams far more than the caches hold, so it needs no
-  // warm-up; for a first run the limit is twice that, because first runs take longer
+  // a kernel that runs longer than kLong · sample_seconds reads far more than the caches hold, so it needs no
+  // warm-up; for a first run the limit is twice as long, because first runs take longer
   constexpr double kLong = 5.0;
   const double least = options.sample_seconds;
   Plan plan{.seconds = std::numeric_limits<double>::infinity()};
@@ -77,9 +77,9 @@ Plan plan_samples(KernelBench& bench, Kernel kernel, const TimingOptions& option
 /// The plans of each order, by kernel.
 using Plans = std::vector<std::array<Plan, kKernels.size()>>;
 
-/// Takes the run that made the plan as the only sample of orders that are plainly slow: their runs are long,
-/// and take several times as long as in the fastest order. They would take most of the time, and cannot be
-/// the best.
+/// Ends the timing of plainly slow orders: the run that made the plan becomes their only sample. Runs in such
+/// an order are long and take several times as long as in the fastest order. They would take most of the
+/// time, and the order cannot be the best.
 void end_plainly_slow(Plans& plans, std::vector<Samples>& samples, std::size_t kernels) {
   constexpr double kSlow = 3.0;
   constexpr double kLongRun = 0.1;  // seconds; a shorter run may have been disturbed

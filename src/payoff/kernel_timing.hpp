@@ -16,7 +16,7 @@ struct TimingOptions {
   /// No round begins that is expected to end later than this. First runs, which plan the samples, are
   /// counted; preparing the orders is not.
   double budget_seconds = 12.0;
-  int min_rounds = 3;  ///< even beyond the budget
+  int min_rounds = 3;  ///< these rounds run even if they exceed the budget
   int max_rounds = 25;
   /// Least length of a sample. A kernel that takes less is repeated, as in a solver, and finds the data of
   /// its last run in the caches.
@@ -64,7 +64,7 @@ using PrepareOrder = std::function<std::unique_ptr<KernelBench>(Index)>;
 /// reference of the speedups.
 Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options = {});
 
-/// As above, for orders that are prepared when needed: `prepare(i)` returns the bench of order i; order 0 is
+/// The same for orders that are prepared when needed: `prepare(i)` returns the bench of order i; order 0 is
 /// the reference. If not all benches fit into the allowed memory, orders are timed in groups, each together
 /// with the reference, and the groups share the budget. Two benches are always held at once, even if they
 /// exceed that memory.

@@ -16,7 +16,7 @@ namespace {
 constexpr std::array kShipped{ShippedMachine{"zen3", zen3_costs}};
 constexpr std::string_view kThis = "this";
 
-/// Returns the first of these that is not empty: the name, the value of MESHORDER_MACHINE, "this".
+/// Returns `name`; if it is empty, the value of MESHORDER_MACHINE; if that is empty or not set, "this".
 std::string asked_name(std::string_view name) {
   if (!name.empty()) return std::string(name);
   const char* const variable = std::getenv("MESHORDER_MACHINE");

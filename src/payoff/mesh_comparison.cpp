@@ -15,8 +15,8 @@
 namespace meshorder {
 namespace {
 
-/// Up to this number of simplices, `reuse` alone requests the reuse of all cache lines: computing it takes a
-/// few seconds, and 13 bytes for each line that a kernel touches.
+/// Largest number of simplices for which `reuse` suffices; larger meshes need `reuse_of_large`, too. Up to
+/// this size the reuse takes a few seconds, and 13 bytes for each line that a kernel touches.
 constexpr Offset kQuickReuse = 2'000'000;
 
 void begin_stage(const MeshComparisonOptions& options, const std::string& stage, double from, double to) {

@@ -27,7 +27,7 @@ struct MeshComparisonOptions {
   bool reuse = false;           ///< compute `reuse` if the mesh has at most two million simplices
   bool reuse_of_large = false;  ///< compute `reuse` for larger meshes, too
   bool iterations = false;      ///< where `reuse` is computed, compute `iterations`, too
-  /// Called at the beginning of a stage; the stage is the share `from` … `to` of the whole.
+  /// Called at the beginning of each stage; the stage takes the share `from` … `to` of the whole call.
   std::function<void(const std::string& stage, double from, double to)> begins = {};
 };
 

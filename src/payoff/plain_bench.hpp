@@ -40,7 +40,7 @@ class PlainBench final : public KernelBench {
   void run_part(Kernel kernel, const Owned& owned, const Share& share);
 
   int corners_;  ///< of each simplex; 1 if there are none
-  Share all_;    ///< all the work, for one thread
+  Share all_;    ///< the whole work, for one thread
   std::vector<Offset> starts_;
   std::vector<Index> columns_;
   std::vector<double> values_;

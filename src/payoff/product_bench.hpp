@@ -22,7 +22,7 @@ class ProductBench final : public KernelBench {
   [[nodiscard]] double redundancy() const override { return 0; }
 
  private:
-  /// Throws InvalidArgument for other kernels than spmv.
+  /// Throws InvalidArgument for kernels other than spmv.
   void compute(Kernel kernel) override;
   void run_rows(Index begin, Index end);
 

@@ -15,7 +15,7 @@ namespace meshorder {
 
 struct RaceOptions {
   OrderOptions ordering = {};                ///< the race is for `ordering.workload`
-  std::string format = {};                   ///< in which the mesh will be written; empty: its own
+  std::string format = {};                   ///< format of the mesh's output; empty: `Mesh::format`
   double graph_seconds = 0;                  ///< time that building the vertex graph took
   MachineChoice machine = choose_machine();  ///< its predictions and threads are used
   OrderTimer timer = time_orders;            ///< empty: predictions decide
@@ -23,8 +23,8 @@ struct RaceOptions {
 
 /// The result of timing or predicting several orders of a mesh.
 struct Race {
-  Advice advice;                ///< candidates: the orders that were timed, or were predicted to be best
-  std::vector<double> factors;  ///< as `factor_for` returns them, by candidate
+  Advice advice;                      ///< candidates: the orders that were timed, or the best predicted ones
+  std::vector<double> factors;        ///< as `factor_for` returns them, by candidate
   std::optional<std::size_t> winner;  ///< place of a candidate; nothing: the mesh's own order
   std::string reason;                 ///< why the winner won, a sentence
 
@@ -34,8 +34,8 @@ struct Race {
 
 /// Times the kernels for half a second each in the mesh's own order, in the order of `auto`, and in two of
 /// five other orders, those with the best predictions. Finds the fastest order. Without a timer, predicted
-/// times decide. `graph` is the vertex graph of `mesh`. Throws InvalidArgument for `bandwidth` and `fill`,
-/// which are not about times of kernels.
+/// times decide. `graph` is the vertex graph of `mesh`. Throws InvalidArgument for workloads without kernels,
+/// such as `bandwidth` and `fill`.
 Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options = {});
 
 /// Sets the reasons of an order that was computed by the methods of a race.

@@ -11,7 +11,7 @@ namespace meshorder {
 struct Steadiness {
   double waiting = 0;  ///< share of the time in which the timed thread did not run
   double pace = 0;     ///< median / least time of a fixed piece of arithmetic, minus 1
-  double repeat = 0;   ///< median relative difference of two timings of one kernel in one order
+  double repeat = 0;   ///< median relative difference between two timings of one kernel in one order
 
   bool operator==(const Steadiness&) const = default;
 };
@@ -25,10 +25,9 @@ std::string reason_to_doubt(const Steadiness& steadiness);
 /// fewer than two samples.
 double repeat_difference(const std::vector<double>& samples);
 
-/// Returns how many successive runs a kernel needs to settle in the caches: the next run takes at most 5 %
-/// longer than the fastest of `seconds`. At least 1. If the last cache keeps only a part of what the second
-/// level evicts, it holds the reused data only after up to ten runs; the second run may be slower than the
-/// first.
+/// Returns how many successive runs a kernel needs to settle in the caches, at least 1: the run after them
+/// takes at most 5 % longer than the fastest of `seconds`. Up to ten are needed if the last cache keeps only
+/// a part of what the second level evicts; the second run may then be slower than the first.
 int runs_to_settle(const std::vector<double>& seconds);
 
 /// Returns whether a kernel has settled: it ran at least four times, and each of the last three runs took at

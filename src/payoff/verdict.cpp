@@ -63,7 +63,7 @@ bool is_vague(const Advice& advice, std::size_t kernel, double factor) {
   return !advice.doubt.empty() && factor - 1 < kBeyondNoise * std::max(kLeastNoise, advice.floor[kernel]);
 }
 
-/// As above, for the mean gain of a workload's kernels.
+/// The same for the mean gain of a workload's kernels.
 bool is_vague(const Advice& advice, Workload workload, double factor) {
   for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
     const bool counts = workload == Workload::all || k == kernel_of(workload);
@@ -97,7 +97,6 @@ std::string in_doubt(const std::string& slower, const std::string& on, const cha
       slower, on, than, command);
 }
 
-/// Returns the verdict on a matrix.
 std::string of_products(const Advice& advice) {
   const bool measured = advice.as_is.costs.measured.has_value();
   const std::string on = measured ? on_threads(advice.threads) : "";
