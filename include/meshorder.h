@@ -99,7 +99,7 @@ typedef struct mo_options {
   void* user;             /**< passed to `progress` */
   int32_t max_iterations; /**< of the eigensolver, >= 1; default 500 */
   int32_t reserved;       /**< 0 */
-  mo_in cell_groups;      /**< group of each cell, or none; cells of one dimension are grouped */
+  mo_in cell_groups;      /**< group of each cell, or none; kept together within each dimension */
 } mo_options;
 
 /** Report on a call. Set `struct_size` to sizeof(mo_result) before the call. Pass null for no report. */
@@ -366,7 +366,7 @@ typedef struct mo_gpu_counts {
   int64_t requests; /**< additions, or loads and stores; one request serves the 32 threads of a warp */
   int64_t sectors; /**< 32-byte sectors that requests touch; counted t times if t threads add to one number */
   int64_t floor;   /**< value of `sectors` if each warp's numbers were all different and side by side */
-  int64_t dram_bytes; /**< bytes read from memory through a cache of `cache_bytes` */
+  int64_t dram_bytes; /**< bytes that the last cache reads from memory */
   int64_t dram_floor; /**< `dram_bytes` if each number were read once */
 } mo_gpu_counts;
 

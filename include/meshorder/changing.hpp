@@ -49,7 +49,7 @@ struct ReordererOptions {
 
 /// Result of `Reorderer::update`.
 struct Update {
-  Permutation permutation;  ///< of the rows, from their present places; the identity under `Repair::none`
+  Permutation permutation;  ///< moves rows from their present places; identity under `Repair::none`
   Repair repair = Repair::none;
   std::string reason = {};  ///< why a new order was computed or not, a sentence
   /// Distance of neighbours in the order: the mean of ⌊log₂ |i − j|⌋ over the edges of every 16th vertex. For

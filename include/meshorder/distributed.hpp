@@ -31,24 +31,24 @@ struct RankOptions {
   /// How `order_parts` makes the parts: "ptscotch", "hilbert", "rsb" (recursive spectral bisection), or
   /// "order" (equal ranges of one order of the whole mesh, by the method "fiedler" only).
   std::string partition = "ptscotch";
-  std::string balance = "vertices";  ///< of `order_parts`: every part gets equally many "vertices" or "cells"
+  std::string balance = "vertices";  ///< for `order_parts`: parts get equally many "vertices" or "cells"
   std::uint64_t seed = 0;
-  std::int32_t parts = 0;    ///< of `order_parts`, at most the number of vertices; 0: one for each rank
-  std::int32_t threads = 1;  ///< of this rank
-  /// Whether vertices that share an element with those of other ranks or parts come after the others.
+  std::int32_t parts = 0;    ///< for `order_parts`, at most the number of vertices; 0: one for each rank
+  std::int32_t threads = 1;  ///< number of threads of this rank
+  /// Whether vertices come last if they share an element with vertices of other ranks or parts.
   bool interface_last = false;
 };
 
 /// Order of one rank's vertices and elements.
 struct RankOrder {
-  std::vector<std::int64_t> new_numbers;  ///< of each own vertex, within the rank's own range
+  std::vector<std::int64_t> new_numbers;  ///< new number of each owned vertex, within the rank's range
   /// The elements in their new order, by `lexmax`: entry k is the old place of the element at new place k.
   std::vector<std::int64_t> cell_order;
 };
 
 /// Parts of a mesh in their order, and the order of their vertices.
 struct PartOrder {
-  std::vector<std::int64_t> new_numbers;  ///< of each own vertex
+  std::vector<std::int64_t> new_numbers;  ///< new number of each owned vertex
   /// First new number of each part, then the end of the last part; the same on all ranks. Vertices that no
   /// element uses have the numbers from that end on.
   std::vector<std::int64_t> part_starts;

@@ -17,7 +17,7 @@ struct FiedlerComponent {
   Index size = 0;         ///< vertices
   double lambda2 = 0;     ///< second-smallest eigenvalue of the component's Laplacian; 0 for one vertex
   double residual = 0;    ///< ‖L x − λ x‖ / ‖x‖, absolute
-  int iterations = 0;     ///< of LOBPCG on the finest graph; 0 where a dense eigensolver was used
+  int iterations = 0;     ///< iterations of LOBPCG on the finest graph; 0 if a dense eigensolver was used
   bool converged = true;  ///< residual ≤ tolerance · λ₂
 
   bool operator==(const FiedlerComponent&) const = default;

@@ -68,10 +68,10 @@ struct ReadOptions {
 [[nodiscard]] MESHORDER_API Mesh read_mesh(const std::filesystem::path& path,
                                            const ReadOptions& options = {});
 
-/// Reads a mesh from the bytes of a file; throws likewise. The mesh does not refer to `bytes`.
+/// Reads a mesh from the bytes of a file; throws as for a path. The mesh does not refer to `bytes`.
 [[nodiscard]] MESHORDER_API Mesh read_mesh(std::span<const std::byte> bytes, const ReadOptions& options = {});
 
-/// Reads a mesh from a stream, up to its end; throws likewise.
+/// Reads a mesh from a stream, up to its end; throws as for a path.
 [[nodiscard]] MESHORDER_API Mesh read_mesh(std::istream& stream, const ReadOptions& options = {});
 
 /// Options of `keep_cells`.
@@ -128,7 +128,7 @@ MESHORDER_API Permutation write_mesh(const Mesh& mesh, const std::filesystem::pa
 MESHORDER_API Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path,
                                      const WriteOptions& options);
 
-/// Writes a mesh to a stream, for formats of one file; returns and throws likewise.
+/// Writes a mesh to a stream, for formats of one file; returns and throws as for a path.
 ///
 /// @param mesh    not changed
 /// @param stream  receives the bytes of the file

@@ -131,7 +131,7 @@ struct GpuCost {
   /// Value of `sectors` if the numbers that each warp touches at once were all different and side by side;
   /// for patches, also if no vertex were in two patches.
   Offset floor = 0;
-  Offset dram_bytes = 0;  ///< bytes read from memory through a cache of `cache_bytes`
+  Offset dram_bytes = 0;  ///< bytes that the last cache reads from memory
   Offset dram_floor = 0;  ///< `dram_bytes` if each number were read once
 
   bool operator==(const GpuCost&) const = default;

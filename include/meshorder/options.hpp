@@ -56,7 +56,7 @@ enum class Check : std::uint8_t {
 /// What to do with an asymmetric pattern.
 enum class Symmetry : std::uint8_t {
   require,  ///< refuse it with InvalidArgument, if `Check` tests for it
-  mirror,   ///< order A + Aᵀ; weights become those of (A + Aᵀ) / 2
+  mirror,   ///< order A + Aᵀ, with the weights of (A + Aᵀ) / 2
 };
 
 /// State of a running call.
@@ -71,8 +71,8 @@ struct Progress {
 
 /// How a call runs. Only `time_limit` can change a result; all else leaves it the same, bit for bit.
 struct Run {
-  /// Most threads, ≥ 0; 0: as many as the caller's TBB arena has. The call runs in an arena of its own; 1
-  /// starts no thread. A limit set by tbb::global_control holds as well.
+  /// Largest number of threads, ≥ 0; 0: as many as the caller's TBB arena has. The call runs in an arena of
+  /// its own; 1 starts no thread. A limit set by tbb::global_control holds as well.
   int threads = 0;
 
   /// Called now and then on the calling thread, never twice at once and with no lock held.
@@ -87,14 +87,14 @@ struct Run {
 /// Options of orders and of the Fiedler vector. All have defaults: name those that differ,
 /// `{.seed = 7, .run = {.threads = 4}}`.
 struct OrderOptions {
-  std::uint64_t seed = 0;  ///< of `scrambled`, of METIS and of start vectors
+  std::uint64_t seed = 0;  ///< seed of `scrambled`, of METIS and of start vectors
   /// Of Fiedler vectors: ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖, > 0; 0.1 suffices for orders.
   double tolerance = 0.1;
-  int max_iterations = 500;           ///< of the eigensolver on the whole graph, ≥ 1
+  int max_iterations = 500;           ///< limit for the eigensolver on the whole graph, ≥ 1
   Workload workload = Workload::all;  ///< what `auto` optimises
   RealView start = {};    ///< an estimate of the Fiedler vector: n numbers, such as `Order::vector`; or none
   IndexView groups = {};  ///< group of each vertex, any integer, or none; groups stay together and ascend
-  IndexView cell_groups = {};  ///< group of each cell, or none; cells of one block and dimension are grouped
+  IndexView cell_groups = {};  ///< group of each cell, or none; kept together within each block and dimension
   Check check = Check::full;
   Symmetry symmetry = Symmetry::require;
   Run run = {};

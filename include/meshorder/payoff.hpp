@@ -73,8 +73,8 @@ struct Candidate {
   MethodChoice vertices = {};
   MethodChoice elements = {};
   Workload workload = Workload::all;  ///< what `auto` optimised
-  Quality spans = {};                 ///< of the vertex graph in this order
-  SparsityPattern pattern = {};       ///< of the same graph, with `kPatternSide` tiles along each side
+  Quality spans = {};                 ///< spans of the vertex graph's edges in this order
+  SparsityPattern pattern = {};       ///< the graph's pattern, `kPatternSide` tiles along each side
   OrderCosts costs = {};
   double order_seconds = 0;  ///< cost of the order: graph, both methods, moving the mesh; 0 for "original"
 };
@@ -138,8 +138,8 @@ struct PayoffOptions {
 /// @param mesh     n vertices with points, m cells with types, at least one of them a line, surface or volume
 /// @param options  see `PayoffOptions`
 /// @return the kernels' times in the present order and in every candidate, and the best candidate for each.
-///         Times count as equal if they differ by less than `Advice::floor`, or by less than 5 % (measured,
-///         or predicted by a calibration), 10 % (else predicted) or 25 % (else predicted, products)
+///         Times count as equal if they differ by less than `Advice::floor`, or by less than 5 %. For times
+///         predicted by shipped costs the second limit is 10 %, for products 25 %
 /// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for unknown types and
 ///         machines, if neither `predict` nor `measure` is true, for `predict` with tuned kernels, and for
 ///         `predict` with `all_threads` if the machine's costs on that number of threads are not known, and
@@ -173,15 +173,15 @@ struct CalibrationOptions {
   /// Time limit, > 0: a measurement begins only if it would end in time, but each measurement is made at
   /// least once.
   double seconds = 16;
-  bool keep = true;  ///< store it, so that `advise` predicts for this machine from now on
+  bool keep = true;  ///< store the calibration, so that `advise` uses it from now on
   Run run = {};
 };
 
 /// Result of `calibrate`.
 struct CalibrationReport {
-  std::string machine = {};  ///< its name in `Advice::machine`
+  std::string machine = {};  ///< the value of `Advice::machine` for this calibration
   std::string json = {};     ///< all that was measured, see docs/json.md
-  std::string file = {};     ///< where it is stored; empty if it is not kept
+  std::string file = {};     ///< the file that stores the calibration; empty if it is not kept
   /// Reason not to trust the calibration, a sentence: the machine was busy or throttled. Empty if it is
   /// reliable.
   std::string doubt = {};

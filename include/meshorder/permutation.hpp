@@ -126,7 +126,7 @@ class MESHORDER_API Permutation {
   /// @param from_stride  bytes from a row to the next; may be larger than the row, or negative
   /// @param to           row k is at `to + k · to_stride` bytes; rows must not overlap each other or those of
   ///                     `from`
-  /// @param to_stride    likewise
+  /// @param to_stride    the same for `to`
   /// @param row_bytes    bytes of a row
   /// @param run          threads; progress and time limit are not used
   /// @throws InvalidArgument for null arrays with n > 0 and row_bytes > 0, or if dense arrays overlap

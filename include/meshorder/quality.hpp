@@ -56,8 +56,8 @@ MESHORDER_API Quality quality(const GraphView& graph, const Run& run = {},
 /// @param graph     n vertices
 /// @param order     n places
 /// @param run       threads, progress
-/// @param symmetry  as above
-/// @throws InvalidArgument as above, and if the sizes differ
+/// @param symmetry  as for the present order
+/// @throws InvalidArgument if `check` refuses the graph, and if the sizes differ
 MESHORDER_API Quality quality(const GraphView& graph, const Permutation& order, const Run& run = {},
                               Symmetry symmetry = Symmetry::require);
 

@@ -84,7 +84,7 @@ class [[nodiscard]] MESHORDER_API Registration {
 /// @note Thread-safe.
 MESHORDER_API Registration register_vertex_method(MethodInfo info, VertexMethod method);
 
-/// Adds an element method; parameters and exceptions likewise.
+/// Adds an element method. Parameters and exceptions are those of `register_vertex_method`.
 MESHORDER_API Registration register_element_method(MethodInfo info, ElementMethod method);
 
 /// Lists the methods of this build and the registered ones, in the order in which help shows them.

@@ -66,7 +66,7 @@ class PointsView {
   /// @param dimension     1, 2 or 3
   /// @param point_stride  bytes from a point to the next; may be negative
   /// @param axis_stride   bytes from an axis to the next; may be negative
-  /// @throws InvalidArgument as above
+  /// @throws InvalidArgument if the dimension is none of these, or there are points and `data` is null
   template <RealType T, CountType N>
   PointsView(const T* data MESHORDER_LIFETIMEBOUND, N count, int dimension, Offset point_stride,
              Offset axis_stride)

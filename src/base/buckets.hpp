@@ -92,7 +92,7 @@ class Buckets {
 
   struct SortedPart {
     std::vector<StoredEntry<Entry>> entries;
-    std::vector<Offset> starts;  ///< where each bucket begins, and the end
+    std::vector<Offset> starts;  ///< where each bucket begins in `entries`, and the end
 
     std::span<const StoredEntry<Entry>> operator[](Index bucket) const {
       return {entries.data() + starts[bucket], entries.data() + starts[bucket + 1]};

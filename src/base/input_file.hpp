@@ -11,7 +11,7 @@
 namespace meshorder {
 
 /// Returns the path with links, "." and ".." resolved if it lies below one of the folders, else nothing. The
-/// folders are resolved likewise ("" is the current one). The file itself need not exist.
+/// folders are resolved in the same way ("" is the current folder). The file itself need not exist.
 std::optional<std::filesystem::path> real_path_below(const std::filesystem::path& path,
                                                      std::span<const std::filesystem::path> folders);
 

@@ -20,7 +20,7 @@ std::uint64_t usable_memory();
 /// A limit on the memory of work whose size depends on the input.
 struct MemoryLimit {
   std::uint64_t bytes = 0;
-  bool is_given = false;  ///< by `set_memory_limit`
+  bool is_given = false;  ///< whether `set_memory_limit` set it
 };
 
 /// Returns the limit of this process; three quarters of `usable_memory` if none was set.

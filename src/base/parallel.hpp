@@ -24,8 +24,7 @@ namespace meshorder {
 constexpr Index chunk_count(Index n, Index size) { return static_cast<Index>((Offset{n} + size - 1) / size); }
 
 /// How threads share the turns (iterations) of a loop. balanced: a thread without work takes turns from
-/// another. repeated: if possible, each thread takes its turns of last time; caches may still hold their
-/// data.
+/// another. repeated: a thread takes the same turns as last time if possible; its caches may hold their data.
 enum class Sharing { balanced, repeated };
 
 /// Calls `work(begin, end)` for ranges that make up 0 … n−1, on all threads. The ranges vary from call to
@@ -87,8 +86,8 @@ void take_turns(Index n, const Work& work) {
   });
 }
 
-/// Returns the sum of `part(begin, end)` over the chunks, added in their order: it is the same for any number
-/// of threads. `Sum{}` must be zero, and `Sum` needs +=.
+/// Returns the sum of `part(begin, end)` over the chunks, added in their order: the same for any number of
+/// threads. `Sum{}` must be zero, and `Sum` needs +=.
 template <class Sum, class Part>
 Sum sum_over_chunks(Index n, Index size, Part part) {
   std::vector<Sum> parts(chunk_count(n, size));

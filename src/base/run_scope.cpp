@@ -51,7 +51,7 @@ void RunScope::tell() {
   const double seconds = std::chrono::duration<double>(now - start_).count();
   const OutsideOfCalls outside;
   if (!run_.progress({.stage = stage_, .fraction = fraction_, .seconds = seconds})) throw Stopped();
-  // read the clock again: after a slow function, `now` would be out of date and every poll would call it
+  // not `now`, which is out of date after a slow function: every poll would then call the function again
   told_ = std::chrono::steady_clock::now();
 }
 

@@ -59,7 +59,7 @@ void check_reals(const mo_out* array, std::size_t count, const char* name);
 /// @throws TooLarge if the type of the array cannot hold count − 1 + base
 void write(std::span<const Index> numbers, std::size_t count, int base, const mo_out* array,
            const char* name);
-/// Writes a permutation of 0 … size − 1 likewise.
+/// The same for a permutation of 0 … size − 1.
 inline void write(std::span<const Index> map, int base, const mo_out* array, const char* name) {
   write(map, map.size(), base, array, name);
 }

@@ -125,7 +125,7 @@ class FewFaces {
     return above;
   }
 
-  /// Fills in the corners of a cell; returns false if the faces are not connected like those of the
+  /// Fills in the corners of a cell; returns false if the faces are not connected like the faces of the
   /// shape.
   bool build(const FacePattern& pattern, CellOfFaces& cell) const {
     const auto first = static_cast<std::size_t>(

@@ -25,8 +25,8 @@ struct CellOfFaces {
     open       ///< fewer than four faces, or an edge that does not belong to exactly two faces
   };
   Kind kind = Kind::other;
-  Shape shape = Shape::tetrahedron;  ///< of a standard cell
-  std::array<Index, 8> corners{};    ///< of a standard cell, in the order of `Cells`
+  Shape shape = Shape::tetrahedron;  ///< shape of a standard cell
+  std::array<Index, 8> corners{};    ///< corners of a standard cell, in the order of `Cells`
   int size = 0;                      ///< number of corners
   bool signs_agree = false;          ///< whether `is_inward` is right for all faces, or wrong for all
 

@@ -241,7 +241,7 @@ ListLoads loads_of_lists(const RecordLists& lists, int lanes) {
 
 Offset sectors_of_product(GraphRef graph, const Permutation& order, Index stride) {
   return sum_over_warps(graph.size(), stride, [&](Index begin, Index end) {
-    std::vector<Index> columns;  // of the warp's rows, ascending in each
+    std::vector<Index> columns;  // columns of the warp's rows, ascending in each row
     std::array<Offset, kWarp + 1> offsets{};
     for (Index place = begin; place < end; ++place) {
       const auto first = static_cast<std::ptrdiff_t>(columns.size());

@@ -33,8 +33,8 @@ constexpr Index kRowsOfPart = 16384;
 template <>
 struct StoredEntry<Position> {
   static_assert(kRowsOfPart - 1 <= UINT16_MAX);
-  std::uint16_t row;     ///< from the first of its part
-  std::uint16_t column;  ///< from the first of its bucket
+  std::uint16_t row;     ///< relative to the first row of its part
+  std::uint16_t column;  ///< relative to the first column of its bucket
 
   static StoredEntry of(Position at, Index first_row, Index first_column) {
     return {static_cast<std::uint16_t>(at.row - first_row),

@@ -54,7 +54,7 @@ class LevelSearch {
   GraphRef graph_;
   std::vector<Index> found_by_;  ///< for each vertex, the place of the vertex that found it
   std::vector<Index> level_start_;
-  std::vector<std::vector<Finding>> findings_;  ///< of each chunk of a level
+  std::vector<std::vector<Finding>> findings_;  ///< the findings of each chunk of a level
 };
 
 }  // namespace meshorder

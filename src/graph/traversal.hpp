@@ -37,7 +37,7 @@ struct BreadthFirstCopy {
   std::vector<Offset> offsets;
   std::vector<Index> neighbours;
   std::vector<Index> old_numbers;     ///< the old number of each vertex
-  std::vector<Component> components;  ///< in the order of `connected_components`
+  std::vector<Component> components;  ///< sorted as by `connected_components`
 
   [[nodiscard]] GraphRef graph() const { return {offsets, neighbours}; }
 };

@@ -23,8 +23,8 @@ template <class Value>
 struct HalfBlockCsrOf {
   std::vector<Index> slabs{0};     ///< bounds of the slabs
   std::vector<Offset> offsets{0};  ///< 2 n + 1
-  std::vector<Index> columns;      ///< with kSpareColumns zeros at the end, as columns are read ahead
-  AlignedVector<Value> values;     ///< with one more number at the end, as vector loads read past it
+  std::vector<Index> columns;      ///< then kSpareColumns zeros, because columns are read ahead
+  AlignedVector<Value> values;     ///< then one spare number, because vector loads read past the end
 
   static constexpr Offset kSpareColumns = 64;
 

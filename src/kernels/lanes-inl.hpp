@@ -68,7 +68,7 @@ struct OneLaneOf {
     for (int c = 0; c < 3; ++c) forces[Offset{kPaddedStride} * v[0] + c] += f[c];
   }
 
-  /// The members below are those of RowLanes.
+  /// The following members correspond to the members of RowLanes.
   static constexpr Index kRegisters = 3;
   static HWY_INLINE void difference(const Real* positions, Index from, Index to, Value (&row)[kRegisters]) {
     MESHORDER_UNROLL

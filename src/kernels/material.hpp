@@ -56,7 +56,7 @@ struct Lame {
 struct Elasticity {
   MaterialModel model = MaterialModel::corotational;
   Tangent tangent = Tangent::exact;
-  Lame lame;  ///< of all simplices, if `mu` and `lambda` are empty
+  Lame lame;  ///< parameters of all simplices, if `mu` and `lambda` are empty
   /// If simplices have different parameters: entry s is that of simplex s; padded to whole batches (see
   /// RestShapes).
   AlignedVector<double> mu, lambda;

@@ -25,8 +25,8 @@ struct RegionMaterial {
 
 /// The materials of all simplices, in the form that Elasticity takes.
 struct SimplexMaterials {
-  Lame lame;                         ///< of all simplices, if `mu` and `lambda` are empty
-  AlignedVector<double> mu, lambda;  ///< of each simplex, padded to whole batches
+  Lame lame;                         ///< parameters of all simplices, if `mu` and `lambda` are empty
+  AlignedVector<double> mu, lambda;  ///< parameters of each simplex, padded to whole batches
   std::vector<double> densities;     ///< one entry for all simplices, or one for each
 };
 

@@ -14,8 +14,8 @@ namespace meshorder {
 
 /// The group of each vertex and each cell of a mesh: materials, regions, physical groups.
 struct Grouping {
-  std::string name;                              ///< of the array, or "sets"
-  Association association = Association::cells;  ///< of that array
+  std::string name;                              ///< name of the array, or "sets"
+  Association association = Association::cells;  ///< association of that array
   std::vector<std::int64_t> values;              ///< distinct, ascending: group g has values[g]
   std::vector<std::string> names;                ///< for sets: the name of each group's set; else empty
   std::vector<Index> of_vertices;                ///< the group of each vertex; values.size(): no group

@@ -87,7 +87,7 @@ EntryPattern entry_pattern(const Mesh& mesh) {
 }
 
 bool is_symmetric(const EntryPattern& pattern) {
-  // the rows are visited in ascending order: in a symmetric pattern, those that have an entry in column c are
+  // the rows are visited in ascending order: in a symmetric pattern, the rows with an entry in column c are
   // visited in the order of the entries of row c
   std::vector<Offset> next(pattern.starts.begin(), pattern.starts.end() - 1);
   for (Index row = 0; row < pattern.rows(); ++row) {

@@ -70,7 +70,7 @@ struct PatternFacts {
   /// `kFullBlocks` of the b × b blocks that have an entry; 1 if there is no such b.
   int block = 1;
   double block_fill = 0;                    ///< share of the positions in these blocks that have an entry
-  std::vector<Offset> histogram_log2 = {};  ///< entry k: number of entries 2^k … 2^(k+1) − 1 off the diagonal
+  std::vector<Offset> histogram_log2 = {};  ///< entry k: entries at 2^k … 2^(k+1) − 1 from the diagonal
 };
 inline constexpr double kFullBlocks = 0.8;
 

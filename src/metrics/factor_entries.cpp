@@ -32,10 +32,10 @@ std::vector<Index> elimination_tree(GraphRef graph, const Permutation& order) {
 
 /// A tree in which each node has a larger number than its descendants, which are numbered consecutively.
 struct Postordered {
-  std::vector<Index> number;            ///< of each node of the given tree
-  std::vector<Index> parent;            ///< by number
-  std::vector<Index> first_descendant;  ///< by number: the smallest number below the node, or its own
-  std::vector<Index> depth;             ///< by number; 0 for roots
+  std::vector<Index> number;            ///< number of each node of the given tree
+  std::vector<Index> parent;            ///< parent of each node, by number
+  std::vector<Index> first_descendant;  ///< by number: the smallest number in the node's subtree
+  std::vector<Index> depth;             ///< depth of each node, by number; 0 for roots
 };
 
 /// Numbers a tree in postorder. `parent` has for each node its parent, a later node, or kNoPlace.

@@ -55,7 +55,7 @@ double sampled_jump_share(GraphRef graph, const Permutation& order);
 /// Numbers of consecutive elements for which working sets are counted: powers of two, ascending.
 inline constexpr std::array<Index, 3> kElementsAtOnce{64, 512, 4096};
 
-/// Returns for each of `kElementsAtOnce` the mean number of distinct vertices that so many consecutive
+/// Returns for each k in `kElementsAtOnce` the mean number of distinct vertices that k consecutive
 /// elements use in that order (Denning 1968: The working set model for program behavior). While these
 /// elements are visited, the data of these vertices, and of pairs of them, pass through the caches.
 ///

@@ -81,7 +81,7 @@ class ReuseDistance {
 
   /// Returns the distance, −1 for a cold access. Amortised O(1 + log distance).
   ///
-  /// @param streamed  in a sample: number of streamed accesses so far, including those to other lines
+  /// @param streamed  in a sample: number of streamed accesses so far, to all lines
   Index access(Index line, Access how = Access::gathered, std::uint32_t streamed = 0);
 
   /// Prefetches the data of a line that `access` needs in a sample.
@@ -119,7 +119,7 @@ class ReuseDistance {
 
   /// In a sample: numbers of far accesses before a line's last far access. A block is sampled as a whole, so
   /// gathered accesses to the line's own block are counted exactly; gathered accesses to other blocks are
-  /// estimated by those to sampled blocks. Streamed accesses count as far.
+  /// estimated by the accesses to sampled blocks. Streamed accesses count as far.
   struct FarOfSample {
     std::uint32_t gathered = 0;
     std::uint32_t own = 0;  ///< gathered accesses to the line's block
@@ -154,7 +154,7 @@ class ReuseDistance {
   Slot slot_count_ = 0;
   Slot next_ = 0;
   std::uint32_t far_accesses_ = kFollowing;  ///< number of far accesses; in a sample, of gathered ones only
-  std::vector<FarOfSample> far_of_line_;     ///< only in a sample
+  std::vector<FarOfSample> far_of_line_;     ///< empty unless this is a sample
   std::vector<std::uint32_t> far_of_block_;  ///< only in a sample: number of gathered far accesses
   std::vector<bool> first_access_jumps_;     ///< for each entry of first_accesses_, whether it is a jump
   Reuse reuse_;

@@ -36,7 +36,7 @@ class ReuseSample {
     }
   }
 
-  /// Reports streamed accesses to the lines first … end − 1, one after another. O(those lines).
+  /// Reports streamed accesses to the lines first … end − 1, one after another. O(end − first).
   void stream(Index first, Index end) {
     while (first < end) {
       const Index block = first / kBlock;

@@ -56,7 +56,7 @@ Permutation in_fronts(GraphRef graph, const Permutation& order);
 /// connected is ordered component by component.
 ///
 /// `pull` has an entry for each vertex. In the whole order, some of the vertex's neighbours come before this
-/// graph and some come after it; the entry is the number of the former minus that of the latter. Each cut
+/// graph and some come after it; the entry is the number before minus the number after. Each cut
 /// takes the direction that brings vertices nearer to these neighbours. O((n + edges) · log n) time, O(n +
 /// edges) memory; one thread.
 std::vector<Index> smoothed_bisection(CsrGraph graph, std::vector<float> pull);

@@ -12,7 +12,7 @@ namespace meshorder {
 /// The vertices of an update compared with those of the previous update.
 struct VertexChanges {
   std::vector<Index>
-      places;  ///< of each vertex after the last update, −1 for new vertices; empty: nothing changed
+      places;  ///< each vertex's place after the last update, −1 if it is new; empty: nothing changed
   std::vector<Index> added;
   Index removed = 0;
 };

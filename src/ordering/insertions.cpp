@@ -80,7 +80,7 @@ class InsertionSearch {
   [[nodiscard]] Slide slide(Index from, Index step, Index last, Offset allowance) const {
     Slide best{from};
     const Offset volume = volume_at_[from];
-    Offset ahead = step * balance_at_[from];  // weight of the edges ahead minus that of the other edges
+    Offset ahead = step * balance_at_[from];  // weight of the edges ahead minus weight of the other edges
     Offset change = 0;
     for (Index k = from + step; k != last + step; k += step) {
       const Offset weight = weight_at_[k];

@@ -27,7 +27,7 @@ std::string reason_to_keep(GraphRef graph, const Permutation& order, std::string
 
 /// Judges an order of elements by the working sets of `kElementsAtOnce` elements: at least one working set
 /// must fall by 2 % or more, and none may grow by more than 5 %. Returns why the elements should stay where
-/// they are, as above. O(vertices + elements).
+/// they are, as `reason_to_keep` does. O(vertices + elements).
 ///
 /// @param as_is  the elements in their old order; empty: the order of their numbers
 /// @param order  the elements in the order to be judged
@@ -36,7 +36,7 @@ std::string reason_to_keep_elements(IncidenceRef elements, std::span<const Index
 
 /// Judges an order of elements by the sectors of their additions on a graphics processor, which must fall by
 /// at least 10 % in the geometric mean of the three layouts. Returns why the elements should stay where they
-/// are, as above. If there are many elements, only a sample is counted.
+/// are, as `reason_to_keep` does. If there are many elements, only a sample is counted.
 ///
 /// @param vertices  the order of the vertices
 /// @param order     the elements in the order to be judged

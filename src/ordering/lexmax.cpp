@@ -32,8 +32,8 @@ template <>
 struct StoredEntry<Entry> {
   static_assert(kPart - 1 <= UINT16_MAX);
   std::array<Index, kInEntry - 1> other_ranks;
-  std::uint16_t largest_rank;  ///< from the first of its bucket
-  std::uint16_t item;          ///< from the first of its part
+  std::uint16_t largest_rank;  ///< relative to the first rank of its bucket
+  std::uint16_t item;          ///< relative to the first element of its part
 
   static StoredEntry of(const Entry& entry, Index first_item, Index first_rank) {
     const auto& [largest, second, third, fourth] = entry.ranks;

@@ -30,7 +30,7 @@ struct VertexInput {
 struct ElementInput {
   IncidenceRef elements;                  ///< every element has a vertex
   const Permutation& vertices;            ///< the order of the vertices, which most element orders follow
-  PointsView points;                      ///< of the vertices in their old order, or none
+  PointsView points;                      ///< points of the vertices in their old order, or none
   std::function<CsrGraph()> facet_graph;  ///< joins elements that share a facet
 };
 

@@ -43,10 +43,10 @@ struct ReordererState {
   Index since = 0;      ///< updates since the last new order
   Index interval = 10;  ///< number of updates after which another new order is computed
   double fresh_span = 0;
-  double fresh_seconds = 0;  ///< of the last order computed without a start vector; 0: none
-  double warm_seconds = 0;   ///< likewise with a start vector
+  double fresh_seconds = 0;  ///< cost of the last order without a start vector; 0: none
+  double warm_seconds = 0;   ///< cost of the last order with a start vector; 0: none
   Observed observed;
-  std::string method;          ///< of later orders; "auto" if the first order was no better
+  std::string method;          ///< method of later orders; "auto" if the first was no better
   std::vector<double> vector;  ///< a start for the next Fiedler vector, by the places after the last update
 };
 

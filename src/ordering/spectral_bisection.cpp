@@ -26,7 +26,7 @@ constexpr double kThickness = 0.8;  // least thickness of slabs, see `cut`: less
 struct Piece {
   CsrGraph graph;
   std::vector<Index> names;  ///< the number of each of its vertices in the whole graph
-  std::vector<float> pull;   ///< of each vertex: neighbours in earlier pieces minus those in later pieces
+  std::vector<float> pull;   ///< for each vertex: number of neighbours in earlier pieces − in later pieces
 };
 
 /// Returns a component of the graph as a piece. `component` lists its vertices, ascending. `number` has an

@@ -129,7 +129,7 @@ Offset turns_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, in
                       static_cast<double>(std::max<Offset>(1, counted)));
 }
 
-/// Passes accesses to a sample, and polls.
+/// Passes accesses to a sample, and calls `poll`.
 struct PolledSample {
   ReuseSample& reuse;
   std::uint32_t visits = 0;

@@ -274,7 +274,7 @@ class AccessStream {
 /// The reuse of data in a run of a kernel.
 struct RunReuse : Reuse {
   Kernel kernel = Kernel::spmv;
-  int dimension = 0;  ///< of the simplices: 3 for tetrahedra
+  int dimension = 0;  ///< dimension of the simplices: 3 for tetrahedra
   /// Number of loops whose end a processor mispredicts: rows of a product, or searches of assembly in a row.
   /// A loop counts if its length differs from the length that came after the same eight preceding lengths the
   /// last time. 0 for other kernels.
@@ -297,7 +297,7 @@ RunReuse reuse_of_product(const EntryPattern& pattern, int halvings = 0);
 /// adds to 16 entries per element.
 inline constexpr std::array<std::size_t, kKernels.size()> kLongestFirst{2, 0, 1, 3};
 
-/// Returns the `halvings` to pass to `reuse_of` for a mesh of so many simplices: 0 below 200,000, and up to
+/// Returns the `halvings` to pass to `reuse_of` for that number of simplices: 0 below 200,000, and up to
 /// 5 from eight million on, so that the time grows more slowly than the mesh (docs/prediction.md reports the
 /// errors).
 int halvings_for(Offset simplices);

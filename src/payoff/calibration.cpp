@@ -36,7 +36,7 @@ struct Runs {
   std::array<std::vector<TimedReuse>, kKernels.size()> timed = {};
   /// Relative differences of two timings of the same problem.
   std::array<std::vector<double>, kKernels.size()> apart = {};
-  std::vector<Steadiness> steadiness = {};  ///< of each measurement
+  std::vector<Steadiness> steadiness = {};  ///< steadiness of each measurement
 };
 
 /// Returns the `halvings` for a lattice: 0 for small ones. For larger ones the reuse is estimated.
@@ -296,9 +296,9 @@ FitQuality fit_all(const Runs& runs, const Latencies& latencies, CostModel& mode
   return quality;
 }
 
-/// As above, for runs on all threads, given the costs on one thread. The costs of products with the matrix
-/// are the costs on one thread times one factor: threads that share a product never wait for each other, and
-/// the few runs determine one factor better than ten costs.
+/// Like `fit_all`, for runs on all threads, given the costs on one thread. The costs of products with a
+/// matrix are the costs on one thread times one factor: threads that share a product never wait for each
+/// other, and the few runs determine one factor better than ten costs.
 FitQuality fit_all_threads(const Runs& runs, const Latencies& latencies, const CostModel& one_thread,
                            CostModel& model) {
   FitQuality quality = fit_all(runs, latencies, model, &one_thread);

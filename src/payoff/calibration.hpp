@@ -14,7 +14,7 @@ namespace meshorder {
 
 /// How well the fit determines the costs, by kernel in the order of kKernels.
 struct FitQuality {
-  std::array<double, kKernels.size()> condition{};  ///< of the fit's equations, see condition_number
+  std::array<double, kKernels.size()> condition{};  ///< condition_number of the fit's equations
   /// The median relative difference between predicted and measured times of the problems.
   std::array<double, kKernels.size()> error{};
   /// The median relative difference of two timings of one problem at different addresses. Smaller differences
@@ -49,11 +49,11 @@ struct Calibration {
 struct CalibrationEffort {
   double seconds = 16;  ///< each step is done once; repetitions begin only if they should end in time
   Offset probed = Offset{256} << 20;  ///< size of the largest buffer that is read, bytes
-  Index vertices = 200'000;           ///< of the largest lattice
+  Index vertices = 200'000;           ///< number of vertices of the largest lattice
 };
 
-/// Returns the effort for so many seconds. For less than half of the usual time, the lattices and buffers are
-/// smaller, so that the last cache and the memory are measured less well.
+/// Returns the effort for `seconds` seconds. For less than half of the usual time, the lattices and buffers
+/// are smaller, so that the last cache and the memory are measured less well.
 CalibrationEffort effort_of(double seconds);
 
 /// Measures this machine: its caches, latencies and bandwidths, and the kernels themselves on small lattices.

@@ -29,7 +29,7 @@ struct CalibrationLattice {
   std::vector<LatticeOrder> orders;
 };
 
-/// Makes a lattice of about so many vertices: cubes of six tetrahedra each or, if flat, squares of two
+/// Makes a lattice of about `vertices` vertices: cubes of six tetrahedra each or, if flat, squares of two
 /// triangles. The windows have sizes such that half of a cache holds data of a window's vertices: their
 /// positions, their positions and forces, or their rows of the matrix. Other orders shuffle no vertex, all
 /// vertices, or all vertices and elements. So the orders differ in which caches they miss. The lattice gets

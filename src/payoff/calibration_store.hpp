@@ -12,7 +12,7 @@ namespace meshorder {
 /// What a calibration is valid for: a processor, its reported caches and a build of the program.
 struct CalibrationKey {
   std::string processor;
-  std::string caches;  ///< as reported, "48K,1M,32M"; empty if the system reports no caches
+  std::string caches;  ///< that the system reports, "48K,1M,32M"; empty if it reports none
   std::string build;
 
   bool operator==(const CalibrationKey&) const = default;

@@ -40,8 +40,8 @@ struct CostModel {
   /// Number of threads that share each run (KernelBench). With several, the costs predict the elapsed time
   /// from the accesses that one thread would make; the prediction is then multiplied by `times_computed`.
   int threads = 1;
-  std::array<KernelCosts, kKernels.size()> solid;  ///< of meshes of tetrahedra
-  std::array<KernelCosts, kKernels.size()> flat;   ///< of meshes of triangles and edges
+  std::array<KernelCosts, kKernels.size()> solid;  ///< costs for meshes of tetrahedra
+  std::array<KernelCosts, kKernels.size()> flat;   ///< costs for meshes of triangles and edges
 
   [[nodiscard]] const KernelCosts& costs(Kernel kernel, int dimension) const noexcept {
     return (dimension == 3 ? solid : flat)[static_cast<std::size_t>(kernel)];

@@ -40,7 +40,7 @@ RunTime time_of_runs(KernelBench& bench, Kernel kernel, int repeats) {
 struct Plan {
   int repeats = 1;     ///< 0: no samples are taken
   int warm_ups = 0;    ///< number of runs before the sample, which are not timed
-  double seconds = 0;  ///< of the fastest run so far
+  double seconds = 0;  ///< duration of the fastest run so far
 };
 
 /// Takes a sample; returns the mean seconds of its runs.

@@ -25,8 +25,8 @@ struct MeshComparisonOptions {
   int threads = 1;  ///< the kernels run on one thread and, if there are more, on all of them
   double budget_seconds = TimingOptions{}.budget_seconds;  ///< for all runs of kernels
   bool reuse = false;           ///< compute `reuse` if the mesh has at most two million simplices
-  bool reuse_of_large = false;  ///< compute `reuse` for larger meshes, too
-  bool iterations = false;      ///< where `reuse` is computed, compute `iterations`, too
+  bool reuse_of_large = false;  ///< compute `reuse` also for larger meshes
+  bool iterations = false;      ///< compute `iterations` in each case in which `reuse` is computed
   /// Called at the beginning of each stage; the stage takes the share `from` … `to` of the whole call.
   std::function<void(const std::string& stage, double from, double to)> begins = {};
 };
@@ -37,8 +37,8 @@ struct ComparedMeshOrder {
   MeshOrder order;
   double seconds = 0;  ///< cost of the order: graph and both methods; 0 for the mesh's own
   EdgeSpan span = {};
-  std::optional<KernelReuse> reuse = {};      ///< of repeated runs
-  std::optional<Iterations> iterations = {};  ///< of the solvers that depend on the order
+  std::optional<KernelReuse> reuse = {};      ///< reuse in repeated runs
+  std::optional<Iterations> iterations = {};  ///< iterations of the solvers that depend on the order
 };
 
 /// Kernels measured with a number of threads.
@@ -47,7 +47,7 @@ struct KernelTable {
   std::vector<OrderTimes> orders;  ///< the mesh's own first
   OrderTimes band;
   Steadiness steadiness;
-  std::vector<double> redundancy;  ///< of each order, see KernelBench::redundancy
+  std::vector<double> redundancy;  ///< KernelBench::redundancy of each order
 };
 
 /// The compared orders and, for reference, the band of the mesh's size (see `ideal_band`).

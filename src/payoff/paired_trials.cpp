@@ -17,7 +17,7 @@ constexpr double kTail = 0.003;           // probability on each side of the int
 constexpr double kTrimmed = 0.2;
 constexpr double kBetweenChecks = 1.2;
 constexpr double kLeastSpread = 0.003;
-constexpr double kLeastDistance = 0.001;  // of an interval from 1: reports show three decimals
+constexpr double kLeastDistance = 0.001;  // least distance of an interval from 1: reports show three decimals
 
 /// Returns the probability that Student's t exceeds `t` > 0, by the finite series of Abramowitz and Stegun,
 /// "Handbook of Mathematical Functions", 1964, 26.7.3 and 26.7.4.
@@ -116,7 +116,7 @@ void PairedTrials::drop_losers() {
   std::stable_sort(left_.begin(), left_.end(),
                    [&](std::size_t a, std::size_t b) { return median(logs_[a]) > median(logs_[b]); });
   const std::vector<double>& best = logs_[left_.front()];
-  std::vector<double> spreads;  // of the differences between an order and the best one
+  std::vector<double> spreads;  // spreads of the differences between an order and the best one
   for (const std::size_t candidate : left_) {
     if (candidate == left_.front()) continue;
     std::vector<double> differences;

@@ -39,7 +39,7 @@ class PlainBench final : public KernelBench {
   template <class Owned>
   void run_part(Kernel kernel, const Owned& owned, const Share& share);
 
-  int corners_;  ///< of each simplex; 1 if there are none
+  int corners_;  ///< corners of each simplex; 1 if there are no simplices
   Share all_;    ///< the whole work, for one thread
   std::vector<Offset> starts_;
   std::vector<Index> columns_;

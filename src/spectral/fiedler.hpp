@@ -26,7 +26,7 @@ struct FiedlerVectors {
   /// negative.
   std::vector<double> values;
   std::vector<std::vector<Index>> component_vertices;  ///< largest first, see connected_components
-  std::vector<FiedlerComponent> components;            ///< in the same order
+  std::vector<FiedlerComponent> components;            ///< reports, in the order of `component_vertices`
   bool complete = true;                                ///< false: the call's time limit ended an iteration
 };
 

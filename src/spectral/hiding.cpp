@@ -120,7 +120,7 @@ bool has_two_below(const PartOfGraph& part, double bound) {
 
 bool may_hide(const Laplacian& laplacian, const Aggregation& aggregation, std::span<const double> masses,
               double eigenvalue) {
-  constexpr Index kMostVertices = 300;  // in larger parts pivots take too long
+  constexpr Index kMostVertices = 300;  // computing the pivots of larger parts takes too long
   std::vector<Index> suspects;
   for (Index aggregate = 0; aggregate < index_size(aggregation.slacks); ++aggregate) {
     if (eigenvalue * aggregation.slacks[aggregate] > kDoubtful) suspects.push_back(aggregate);

@@ -30,7 +30,7 @@ bool may_hide(const Laplacian& laplacian, const Aggregation& aggregation, std::s
 /// Returns whether L x = μ M x has more than one eigenvalue below `bound`; the first one is 0, of constants.
 /// Decides by the signs of pivots; true if a sign is uncertain. O(n³).
 ///
-/// @param masses  as above
+/// @param masses  of the vertices; empty: all 1
 bool has_two_below(const Laplacian& laplacian, std::span<const double> masses, double bound);
 
 }  // namespace meshorder

@@ -14,8 +14,7 @@ namespace {
 constexpr Index kRows = 2048;       // rows of a chunk for threads; the data of a pass stay in the L2 cache
 constexpr double kCalm = 0.01;      // a Ritz value is calm if its relative change per iteration is less
 constexpr int kLeastUntilCalm = 4;  // iterations until noise becomes smooth
-constexpr double kSettled = 0.2;    // a Ritz value with a larger residual / value may still fall later, even
-// if it has stopped changing
+constexpr double kSettled = 0.2;    // largest residual / Ritz value at which a calm value will not fall later
 
 /// Numbers that are added entry by entry.
 template <std::size_t N>

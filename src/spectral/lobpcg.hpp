@@ -14,11 +14,11 @@ struct LobpcgOptions {
   double tolerance = 0.1;    ///< on ‖L x − λ B x‖ / (λ ‖x‖) of the first column
   int max_iterations = 500;  ///< the result reports whether the iteration converged
   TimeLimit limit = {};      ///< ends the iteration, like max_iterations
-  bool until_calm = false;   ///< ends when all columns have settled, whatever the tolerance
+  bool until_calm = false;   ///< ends when all columns have settled; ignores the tolerance
 };
 
 struct LobpcgResult {
-  double eigenvalue = 0;  ///< of the first column
+  double eigenvalue = 0;  ///< eigenvalue of the first column
   double residual = 0;    ///< ‖L x − λ B x‖ / ‖x‖ of the first column
   int iterations = 0;
   bool converged = false;

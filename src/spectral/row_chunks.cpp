@@ -7,7 +7,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kChunks = 16;  // at most 32, the bits of a set of chunks; enough for the cores of a desktop
+constexpr Index kChunks = 16;  // at most 32: a word holds a set of chunks as bits; enough for most desktops
 constexpr Index kFewColours = 3;
 
 }  // namespace

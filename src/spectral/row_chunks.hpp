@@ -12,7 +12,7 @@ namespace meshorder {
 constexpr Index kRowsOfPiece = 4096;
 
 /// Returns a function that calls `work(begin, end)` for pieces of a range of rows, the first piece first, and
-/// polls between them: a chunk of a large graph may take a second.
+/// calls `poll` between them: a chunk of a large graph may take a second.
 template <class Work>
 auto in_rising_pieces(Work work) {
   return [work](Index begin, Index end) {
