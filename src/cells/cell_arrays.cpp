@@ -17,7 +17,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Offset kEntriesPerRange = 262144;  // converted by a thread at a time
+constexpr Offset kEntriesPerRange = 262144;  // entries that a thread takes at a time
 
 /// VTK types that number their corners along the axes. Swapping two corners makes a pixel a quad, swapping
 /// two pairs makes a voxel a hexahedron.

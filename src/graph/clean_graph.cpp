@@ -47,7 +47,7 @@ Offset clean_row(OwnedGraph& rows, Index v, std::vector<std::pair<Index, double>
 
 /// Cleans all rows and closes the gaps.
 OwnedGraph cleaned_rows(OwnedGraph rows) {
-  constexpr Index kRows = 4096;  // sorted by a thread at a time
+  constexpr Index kRows = 4096;  // rows that a thread cleans at a time
   std::vector<Offset> offsets(rows.offsets.size(), 0);
   for_each_chunk(rows.size(), kRows, [&](Index /*chunk*/, Index begin, Index end) {
     std::vector<std::pair<Index, double>> buffer;
@@ -71,7 +71,7 @@ OwnedGraph cleaned_rows(OwnedGraph rows) {
 
 /// Copies a graph without its loops. The rows must ascend and have no repeats.
 OwnedGraph without_loops(const GraphArrays& graph) {
-  constexpr Index kRows = 4096;  // copied by a thread at a time
+  constexpr Index kRows = 4096;  // rows that a thread copies at a time
   OwnedGraph copy;
   resize_large(copy.offsets, graph.offsets.size());
   const GraphRef rows(graph.offsets, graph.neighbours);

@@ -78,7 +78,7 @@ GraphFindings examine_rows(const GraphArrays& graph, Index begin, Index end) {
 
 template <bool Symmetry, bool Weighted>
 GraphFindings examine_all(const GraphArrays& graph) {
-  constexpr Index kRows = 8192;  // examined by a thread at a time
+  constexpr Index kRows = 8192;  // rows that a thread examines at a time
   return sum_over_chunks<GraphFindings>(graph.size(), kRows, [&](Index begin, Index end) {
     return examine_rows<Symmetry, Weighted>(graph, begin, end);
   });

@@ -43,7 +43,7 @@ void take_offsets(const GraphView& graph, GraphArrays& arrays) {
 
 /// Takes the neighbours as they are, or narrowed and counted from 0.
 void take_neighbours(const GraphView& graph, GraphArrays& arrays) {
-  constexpr Offset kEntries = 262144;  // converted by a thread at a time
+  constexpr Offset kEntries = 262144;  // entries that a thread converts at a time
   const IndexView& neighbours = graph.neighbours;
   if (neighbours.bytes() == 4 && graph.base == 0) {
     arrays.neighbours = {static_cast<const Index*>(neighbours.data()), neighbours.size()};

@@ -51,7 +51,7 @@ namespace {
 /// for memory. Looks at about a thousand rows.
 bool is_scattered(IncidenceRef incidence) {
   constexpr Index kLooks = 1000;
-  constexpr Index kFar = 65536;  // number of columns whose entries fill a cache of some megabytes
+  constexpr Index kFar = 65536;  // the entries of this many columns fill a cache of some megabytes
   const Index step = incidence.size() / kLooks + 1;
   Index looks = 0;
   Index far = 0;

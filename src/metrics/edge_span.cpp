@@ -77,9 +77,9 @@ EdgeSpan exact_span(GraphRef graph, std::span<const Index> place_of) {
 /// @param place_of  `place_of(v)` returns the new number of a vertex
 template <class PlaceOf>
 EdgeSpan span_of_sample(GraphRef graph, PlaceOf place_of) {
-  constexpr Index kAtOnce = 4096;  // taken by a thread at a time
+  constexpr Index kAtOnce = 4096;  // vertices that a thread takes at a time
   constexpr Index kAhead = 8;
-  constexpr double kLargeProduct = 0x1p+960;  // the product with one more span does not overflow
+  constexpr double kLargeProduct = 0x1p+960;  // a smaller product times one more span does not overflow
   const VertexSample sample(graph.size());
   const auto sums = sum_over_chunks<SpanSums<Offset>>(sample.size(), kAtOnce, [&](Index begin, Index end) {
     SpanSums<Offset> part;

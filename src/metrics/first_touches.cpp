@@ -10,11 +10,11 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kEntriesInLine = 8;  // doubles
+constexpr Index kEntriesInLine = 8;  // doubles in a cache line
 constexpr Index kLinesBefore = 3;
-constexpr Index kRecent = 32;         // first touches
-constexpr Index kWindow = 4096;       // rows
-constexpr Index kWindowsForOne = 16;  // step between windows of small graphs
+constexpr Index kRecent = 32;         // number of first touches that count as recent
+constexpr Index kWindow = 4096;       // rows in a window
+constexpr Index kWindowsForOne = 16;  // on small graphs, one window in this many is counted
 constexpr Index kWindows = 8;         // number of windows of large graphs; sometimes there is one more
 
 struct Touches {

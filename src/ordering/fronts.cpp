@@ -14,7 +14,7 @@ namespace {
 
 constexpr Index kInChunk = 2048;  // vertices: with fewer, springs take 2 % longer; with four times as many,
                                   // products take 3 % longer
-constexpr Index kInSection = 32 * kInChunk;  // vertices taken by a thread at a time
+constexpr Index kInSection = 32 * kInChunk;  // vertices that a thread takes at a time
 constexpr Index kAheadOfOffset = 24;
 constexpr Index kAheadOfRow = 8;
 constexpr Index kAheadOfPlaces = 4;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Index kChunk = 4096;
 constexpr Index kReach = 64;  // places that a slide may pass for each edge of the vertex
-constexpr Offset kSlack = 2;  // factor on (weight of the vertex's edges · its volume)
+constexpr Offset kSlack = 2;  // allowance of a slide / (weight of the vertex's edges · its volume)
 
 /// The places begin … end−1 of the line.
 struct Places {

@@ -15,7 +15,7 @@ namespace {
 
 /// Sorts vertices by rising degree, stably.
 void sort_by_degree(GraphRef graph, std::span<Index> vertices) {
-  constexpr std::size_t kFew = 32;  // std::stable_sort allocates memory even for two vertices
+  constexpr std::size_t kFew = 32;  // for more vertices use std::stable_sort, which allocates memory
   const auto less = [&](Index a, Index b) { return graph.degree(a) < graph.degree(b); };
   if (vertices.size() > kFew) return std::stable_sort(vertices.begin(), vertices.end(), less);
   for (std::size_t k = 1; k < vertices.size(); ++k) {

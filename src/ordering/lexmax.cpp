@@ -16,8 +16,8 @@
 namespace meshorder {
 namespace {
 
-constexpr Offset kInEntry = 4;  // ranks
-constexpr Index kPart = 65536;  // elements taken by a thread at a time
+constexpr Offset kInEntry = 4;  // number of ranks in an Entry
+constexpr Index kPart = 65536;  // elements that a thread takes at a time
 
 /// An element with the largest ranks of its vertices in descending order, then −1 if it has fewer vertices.
 /// Most comparisons need only these ranks, so they are side by side in memory.

@@ -64,7 +64,7 @@ Index place(std::span<const Index> place_of, Index v) {
 }
 
 bool reads_forward(const GraphRef& graph) {
-  constexpr double kFew = 0.1;  // share of the lines
+  constexpr double kFew = 0.1;  // with a smaller jump share, a sweep reads forward
   return sampled_jump_share(graph, Permutation::identity(graph.size())) < kFew;
 }
 

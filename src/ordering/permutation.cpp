@@ -47,7 +47,7 @@ void check_count(std::size_t n) {
 
 /// Returns the inverse of `map`, which is checked to be a bijection of 0 … n−1.
 std::vector<Index> inverted(std::span<const Index> map) {
-  constexpr Offset kEntries = 65536;  // inverted by a thread at a time
+  constexpr Offset kEntries = 65536;  // entries that a thread takes at a time
   check_count(map.size());
   const auto n = static_cast<Offset>(map.size());
   std::vector<Index> inverse(map.size(), -1);

@@ -51,7 +51,7 @@ std::vector<Offset> moved_offsets(const GraphArrays& matrix, std::span<const Ind
 template <class Take>
 void for_each_moved_row(const GraphArrays& matrix, const Permutation& order, std::span<const Offset> offsets,
                         const Take& take) {
-  constexpr Offset kRows = 4096;  // moved by a thread at a time
+  constexpr Offset kRows = 4096;  // rows that a thread moves at a time
   const std::span<const Index> new_to_old = order.new_to_old();
   const std::span<const Index> old_to_new = order.old_to_new();
   for_each_range(order.size(), kRows, [&](Offset first, Offset last) {

@@ -15,7 +15,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Offset kNumbers = 262144;  // renumbered by a thread at a time
+constexpr Offset kNumbers = 262144;  // numbers that a thread takes at a time
 
 template <std::size_t Bytes>
 using Constant = std::integral_constant<std::size_t, Bytes>;
@@ -54,7 +54,7 @@ void Permutation::check_apart(const void* from, const void* to, std::size_t byte
 
 void Permutation::move_rows(const void* from, Offset from_stride, void* to, Offset to_stride,
                             std::size_t row_bytes, const Run& run) const {
-  constexpr Offset kRows = 16384;  // moved by a thread at a time
+  constexpr Offset kRows = 16384;  // rows that a thread moves at a time
   const Offset n = size();
   if (n == 0 || row_bytes == 0) return;
   if (from == nullptr || to == nullptr)

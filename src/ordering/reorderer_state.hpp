@@ -34,7 +34,7 @@ struct Observed {
   }
 };
 
-inline constexpr Index kMostInterval = 1 << 20;  ///< updates from one new order to the next, at most
+inline constexpr Index kMostInterval = 1 << 20;  ///< largest number of updates from one new order to the next
 
 /// What a `Reorderer` keeps from update to update.
 struct ReordererState {

@@ -86,7 +86,7 @@ struct SortByValue {
 template <class ValueOf, class PlaceOf, class Sort = SortByValue>
 Permutation sorted_by(Index n, const ValueOf& value_of, Index places, const PlaceOf& place_of,
                       const Sort& sort = {}) {
-  constexpr Index kPart = 65536;  // numbers taken by a thread at a time
+  constexpr Index kPart = 65536;  // numbers that a thread takes at a time
   using Entry = ValuedItem<decltype(value_of(n))>;
   const auto place = [&](const Entry& entry) { return place_of(entry.value); };
   const auto entries_of = [&](Index /*part*/, Index begin, Index end) {

@@ -49,7 +49,7 @@ std::array<std::uint32_t, 3> Lattice::cell_of(const Point& point) const {
 
 namespace {
 
-constexpr Index kPointsAtOnce = 16384;  // examined by a thread at a time
+constexpr Index kPointsAtOnce = 16384;  // points that a thread examines at a time
 
 }  // namespace
 
