@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kRemedy = "put the file itself there, or allow its own folder by --allow-includes-from";
 
-// O_NONBLOCK: opening does not wait for the writer of a pipe; files ignore it
+// O_NONBLOCK: opening does not wait for the writer of a pipe; the flag has no effect on files
 constexpr int kReading = O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
 #ifdef O_PATH
 constexpr int kPassing = O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;

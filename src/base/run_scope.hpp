@@ -12,9 +12,9 @@ namespace meshorder {
 /// progress function asks for that.
 ///
 /// The scope belongs to the thread that made the call. On other threads `poll` only checks whether their loop
-/// is cancelled, so the loops of base/parallel.hpp call it in every turn: the calling thread takes turns too,
-/// and an exception there cancels the loop on all threads. A call within a call (a user's own method) belongs
-/// to the outer call unless its own run has a progress function or a time limit.
+/// is cancelled, so the loops of base/parallel.hpp call `poll` in every turn: the calling thread takes turns
+/// too, and an exception there cancels the loop on all threads. A call within a call (a user's own method)
+/// belongs to the outer call unless its own run has a progress function or a time limit.
 class RunScope {
  public:
   explicit RunScope(const Run& run);

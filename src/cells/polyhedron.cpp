@@ -134,7 +134,7 @@ class FewFaces {
         faces_.begin());
     const std::size_t n = pattern.base;
     const std::span<const Index> base = faces_[first].corners;
-    // the normal of the first face of a cell points into it
+    // the normal of the first face of a cell points into the cell
     for (std::size_t k = 0; k < n; ++k) cell.corners[k] = base[is_turned_[first] ? k : (n - k) % n];
     const bool has_apex = static_cast<std::size_t>(pattern.size) == n + 1;
     std::array<Index, kMostCorners> above{};

@@ -63,7 +63,7 @@ void multiply(const HalfBlockCsrOf<Value>& matrix, std::span<const double> x, st
 
 /// Returns whether repeated products with a symmetric matrix of this pattern are expected to be faster with
 /// half of it stored (see HalfBlockCsr): the matrix must take 4 MiB or more, too much for a core's own
-/// caches, and less than half of its blocks may be between slabs. The answer is the same on every machine; it
+/// caches, and less than half of its blocks may be between slabs. The answer is the same on every machine. It
 /// comes from the measurements in docs/evidence/benchmarks.md. O(blocks); reads only the columns.
 bool half_storage_pays(const BlockCsr& matrix);
 

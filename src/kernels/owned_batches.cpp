@@ -10,7 +10,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the first spare vertex of a share. With 32 bytes per vertex it begins a cache line.
+/// Returns the first spare vertex of a share. With 32 bytes per vertex, this vertex begins a cache line.
 Index first_spare(Index n, Index part) { return n + n % 2 + kBatch * part; }
 
 void append(OwnedBatches& share, Index batch, std::span<const Index> vertices, Index spare) {

@@ -94,7 +94,7 @@ struct RotationTerms {
 /// a closest rotation that is well separated from others.
 ///
 /// The largest eigenvalue of N is λ = tr S, the largest root of λ⁴ − 2aλ² − 8dλ + a² − 4b with a = ‖F‖²,
-/// b = ‖cof F‖² and d = det F. Halley's method decreases to it from √3 ‖F‖ without overshooting, since all
+/// b = ‖cof F‖² and d = det F. Halley's method decreases to λ from √3 ‖F‖ without overshooting, since all
 /// roots are real. R = ∂λ/∂F then follows by differentiating the polynomial:
 /// R = ((λ² + a) F + 2λ cof F − 2 F FᵀF) / (λ³ − aλ − 2d), whose denominator is 2 Π (σᵢ + σⱼ), i < j.
 template <class Lanes>
@@ -104,7 +104,7 @@ HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3], typ
   constexpr bool kFloat = std::is_same_v<typename Lanes::Number, float>;
   constexpr int kSteps = 10;
   // convergence is cubic: if the relative error is this small before a step, only rounding errors remain
-  // after it
+  // after that step
   constexpr double kNear = kFloat ? 1e-3 : 1e-6;
   // limit on the ratio λ³ / denominator, which is 27/16 at rest; rounding errors grow about as the square of
   // the ratio

@@ -50,7 +50,7 @@ class CellSimplices {
  public:
   /// No simplices.
   CellSimplices() = default;
-  /// Cuts a mesh, which must not change while this is used. O(cells).
+  /// Cuts a mesh, which must not change while this object is used. O(cells).
   explicit CellSimplices(const Mesh& mesh);
   CellSimplices(CellSimplices&&) = default;
   CellSimplices& operator=(CellSimplices&&) = default;

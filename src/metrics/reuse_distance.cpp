@@ -197,7 +197,7 @@ Index ReuseDistance::move_mark(Slot from, Slot to) {
   return static_cast<Index>(between + in_open);
 }
 
-/// Completes a word, and each node that ends with it: the next slots come after them.
+/// Completes a word, and each node that ends with this word, when the next slot comes after them.
 void ReuseDistance::close_word(std::size_t word) {
   std::size_t node = word;
   for (std::size_t level = 0; level < levels_.size(); ++level) {

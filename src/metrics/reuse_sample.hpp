@@ -23,7 +23,8 @@ namespace meshorder {
 /// · 2^halvings lines are unreliable.
 class ReuseSample {
  public:
-  /// For accesses to lines 0 … lines − 1, of which 2^-halvings are sampled. With 0 halvings it is exact.
+  /// For accesses to lines 0 … lines − 1, of which 2^-halvings are sampled. With 0 halvings the estimate is
+  /// exact.
   ReuseSample(Index lines, int halvings);
 
   void access(Index line, Access how = Access::gathered) {
@@ -72,7 +73,7 @@ class ReuseSample {
   struct Waiting {
     Index line = 0;
     Access how = Access::gathered;
-    std::uint32_t streamed = 0;  ///< number of streamed accesses before it
+    std::uint32_t streamed = 0;  ///< number of streamed accesses before this access
   };
   static constexpr std::size_t kWaiting = 32;
 

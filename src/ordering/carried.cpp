@@ -47,8 +47,7 @@ Index median_rank(std::span<const Index> neighbours, std::span<const Index> rank
 
 /// Finds a rank for the new vertices in waves: the vertices of a wave have neighbours with a rank.
 ///
-/// @param rank_of  rank of each vertex, kUnranked for new vertices; the ranks that are found are written to
-///                 it
+/// @param rank_of  rank of each vertex, kUnranked for new vertices; receives the ranks that are found
 std::vector<Insertion> found_places(std::span<const Index> added, const NeighbourRows& rows,
                                     std::vector<Index>& rank_of) {
   const auto row_of = [&](Index k) {

@@ -87,7 +87,7 @@ class SectionRenumbering {
   }
 
   /// Returns the new number of a place before the chunk. Another thread may be renumbering places before the
-  /// section: for these it returns the old place, which is less than a chunk away from the new one.
+  /// section: for such places, returns the old place, which is less than a chunk away from the new one.
   [[nodiscard]] Index number_at(Index place) const { return place < begin_ ? place : places_[place]; }
 
   GraphRef graph_;

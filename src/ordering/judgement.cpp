@@ -13,11 +13,10 @@
 namespace meshorder {
 namespace {
 
-constexpr double kGain = 0.98;       // largest new figure, as a share of the old one, that is a gain
-constexpr double kTolerated = 1.05;  // largest new figure, as a share of the old one, that is tolerated
-constexpr Index kBeyondCaches =
-    100'000;                      // vertices; on smaller meshes the times of good orders differ by < 3 %
-constexpr double kNotable = 0.1;  // share of the lines, worth 2 to 4 % of the time of a product
+constexpr double kGain = 0.98;            // largest new figure, as a share of the old one, that is a gain
+constexpr double kTolerated = 1.05;       // largest new figure, as a share of the old one, that is tolerated
+constexpr Index kBeyondCaches = 100'000;  // vertices; on smaller meshes good orders differ by less than 3 %
+constexpr double kNotable = 0.1;  // difference of jump shares that decides: 2 to 4 % of a product's time
 constexpr double kGainOnGpu =
     0.9;  // largest share of the old sectors: repeats of a kernel differ by a few per cent
 constexpr Index kWarpsToLookAt = 4096;  // warps in a sample; counting more changes results by less than 1 %

@@ -140,8 +140,7 @@ Order order_graph(std::string_view method, const VertexInput& input, const Order
   Order result;
   if (const BuiltInVertexMethod* found = find_method(kVertexMethods, method)) {
     result = found->order(input, options);
-    const bool stays =
-        found->order == original_vertices || result.method.name == "original";  // `auto` chose it
+    const bool stays = found->order == original_vertices || result.method.name == "original";  // by `auto`
     if (!stays) {
       result.permutation = with_isolated_last(std::move(result.permutation), input.graph);
     }

@@ -71,7 +71,7 @@ Order order_cells(std::string_view method, const CellArrays& cells, const Permut
   const auto facet_graph = [&] { return joined_by_facet(cells, elements); };
   const ElementInput input{elements.incidence(), vertices, points, facet_graph};
   MethodChoice choice{std::string(method), {}};
-  // in groups the old order is no alternative, so `auto` need not judge it
+  // in groups the old order is no alternative, so `auto` need not compare with it
   if (method == "auto" && !(groups.empty() && options.groups.empty()))
     choice = choose_element_method(input, options.workload);
   Order result = order_incidence(choice.name, input, options);

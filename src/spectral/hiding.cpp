@@ -82,8 +82,7 @@ double spread_slack(const PartOfGraph& part, Index founder, double least) {
 ///
 /// @param rows  its lower triangle, `size` entries a row; overwritten
 bool has_two_negative_pivots(std::vector<double>& rows, Index size) {
-  constexpr double kTooSmall =
-      1e-12;  // rounding may change the sign of a pivot below this share of the diagonal
+  constexpr double kTooSmall = 1e-12;  // a pivot below this share of the diagonal may have the wrong sign
   const auto row = [&](Index v) { return rows.data() + std::ptrdiff_t{v} * size; };
   std::vector<double> diagonal(static_cast<std::size_t>(size));
   for (Index v = 0; v < size; ++v) diagonal[v] = std::abs(row(v)[v]);

@@ -19,8 +19,8 @@ constexpr Index kDenseSize = 60;     // a dense eigensolver takes half a millise
 constexpr Index kSmallGraph = 1024;  // a search takes less than a millisecond up to this size
 constexpr Index kExactSize = 128;    // counting eigenvalues by pivots takes 0.1 ms at this size
 
-/// Makes the next coarser level of `fine`, and stores the transfer to it in `fine`. Returns false if that is
-/// not worthwhile.
+/// Makes the next coarser level of `fine`, and stores the transfer to it in `fine`. Returns false if
+/// coarsening is not worthwhile.
 bool coarsen(Level& fine, bool smoothed, Level& coarse) {
   constexpr Index kFewAlone = 50;  // chunks are kept if at most one vertex in 50 is alone
   const Index n = fine.laplacian.size();

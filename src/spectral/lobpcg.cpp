@@ -27,7 +27,7 @@ struct Sums {
   }
 };
 
-/// A block of vectors and L times it.
+/// A block of vectors, and L times this block.
 template <int M>
 struct WithImage {
   VectorBlock<M> vectors;
