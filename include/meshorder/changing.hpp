@@ -52,9 +52,9 @@ struct Update {
   Permutation permutation;  ///< moves rows from their present places; identity under `Repair::none`
   Repair repair = Repair::none;
   std::string reason = {};  ///< why a new order was computed or not, a sentence
-  /// Distance of neighbours in the order: the mean of ⌊log₂ |i − j|⌋ over the edges of every 16th vertex. For
-  /// points alone, the mean of log₂ (1 + distance of a point from its place on the curve) over a sample.
-  /// Compare it only with values of the same method.
+  /// Distance of neighbours in the order: the mean of ⌊log₂ |i − j|⌋ over the edges of one in 16 vertices of
+  /// a graph, or one in 16 cells of a mesh. For points alone, the mean of log₂ (1 + distance of a point from
+  /// its place on the curve) over a sample. Compare it only with values of the same method.
   double span_log2 = 0;
   double fresh_span_log2 = 0;  ///< `span_log2` right after the last search for a new order
   Index added = 0;             ///< vertices that are new

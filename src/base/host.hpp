@@ -32,8 +32,8 @@ ProcessorFamily family_of_this_machine();
 bool is_zen4(const ProcessorFamily& family);
 
 /// Returns the folder for files that can be remade: `$MESHORDER_CACHE`, `$XDG_CACHE_HOME/meshorder` or
-/// `~/.cache/meshorder`, the first whose variable is set; empty if no variable is set. The folder need not
-/// exist.
+/// `~/.cache/meshorder`, the first whose variable is set; the last two variables do not count if relative.
+/// Empty if no variable is set. The folder need not exist.
 std::filesystem::path user_cache_folder();
 
 }  // namespace meshorder
