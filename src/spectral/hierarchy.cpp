@@ -131,7 +131,7 @@ Hierarchy::Hierarchy(Laplacian coarse, std::vector<double> masses) {
   coarsen_all(true);
 }
 
-/// Makes the levels coarser than the finest one.
+/// Makes all levels that are coarser than the finest level.
 void Hierarchy::coarsen_all(bool smoothed) {
   levels_.back().chunks = RowChunks(levels_.back().laplacian);
   while (levels_.back().laplacian.size() > kDenseSize) {
