@@ -30,7 +30,7 @@ enum class Kernel : std::uint8_t {
   springs,   ///< forces of springs along the edges
 };
 
-/// How these loops are written. The gain of an order depends on it.
+/// How the kernels are written. The gain of an order depends on this.
 enum class KernelSet : std::uint8_t {
   /// As in most programs: one loop, no prefetching, no blocking. One unknown for each vertex in the matrix,
   /// linear elements, edges sorted by their smaller end.

@@ -49,7 +49,7 @@ struct ElementProblem {
 /// order.
 using VertexMethod = std::function<Permutation(const VertexProblem&, const OrderOptions&)>;
 
-/// An element method returns the order of the m elements. It is called, and may throw, as a `VertexMethod`.
+/// An element method returns the order of the m elements. Calls and exceptions are as for a `VertexMethod`.
 using ElementMethod = std::function<Permutation(const ElementProblem&, const OrderOptions&)>;
 
 /// Owner of an entry in the list of methods; the destructor removes the method. Calls that are running

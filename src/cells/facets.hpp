@@ -13,7 +13,7 @@ namespace meshorder {
 
 /// A facet of an element: a face of a volume, an edge of a surface, an end of a line.
 struct ElementFacet {
-  std::array<Index, 4> corners;  ///< descending; −1 after the last
+  std::array<Index, 4> corners;  ///< descending; −1 in places without a corner
   Index element;
 };
 

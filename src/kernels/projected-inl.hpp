@@ -36,7 +36,7 @@ struct ProjectedTangent {
   using Value = typename Lanes::Value;
   Value u[3][3];        ///< U
   Value h[3][3];        ///< h_a = Vᵀ g_a of the corners 1, 2, 3
-  Value stretch[3][3];  ///< weighted; both triangles
+  Value stretch[3][3];  ///< ∂²Ψ/∂σᵢ∂σⱼ without negative eigenvalues, weighted; both triangles
   Value alike[3];       ///< ½ (flip + twist), weighted: couples an entry of δF in principal axes to itself
   Value across[3];      ///< ½ (flip − twist), weighted: couples such an entry to the transposed one
 

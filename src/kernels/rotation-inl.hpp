@@ -109,7 +109,7 @@ HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3], typ
   // limit on the ratio λ³ / denominator, which is 27/16 at rest; rounding errors grow about as the square of
   // the ratio
   constexpr double kLargestRatio = kFloat ? 6.0 : 12.0;
-  // with this least root, its seventh power does not underflow
+  // least accepted root: its seventh power does not underflow
   constexpr double kSmallest = kFloat ? 1e-4 : 1e-40;
   const auto& cof = terms.cof;
   cofactors<Lanes>(f, terms.cof);

@@ -47,7 +47,7 @@ void load_methods(const std::filesystem::path& shared_library) {
   if (std::filesystem::exists(file, failed_to_look) &&
       !std::filesystem::is_regular_file(file, failed_to_look))
     throw Unavailable("plug-in: " + file.string() +
-                      " is not a file; give a shared library");  // a pipe would wait
+                      " is not a file; give a shared library");  // dlopen would block on a pipe
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw Unavailable("plug-in: " + std::string(dlerror()));
   using Plugin = mo_status (*)(mo_register_fn);

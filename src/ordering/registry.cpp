@@ -106,7 +106,7 @@ void remove(std::uint64_t id) {
   take_out(all.element_methods, id, element_method);
 }
 
-/// Returns the method; if it needs points, wrapped so that it refuses to work without the coordinates of all
+/// Returns the method. If it needs points, the result throws InvalidArgument without the coordinates of all
 /// vertices. `vertices(problem)` returns the number of vertices.
 template <class Problem, class Method, class Vertices>
 Method with_points(const MethodInfo& info, Method method, Vertices vertices) {

@@ -47,7 +47,7 @@ struct ReordererState {
   double warm_seconds = 0;   ///< cost of the last order with a start vector; 0: none
   Observed observed;
   std::string method;          ///< method of later orders; "auto" if the first was no better
-  std::vector<double> vector;  ///< a start for the next Fiedler vector, by the places after the last update
+  std::vector<double> vector;  ///< start for the next Fiedler vector, indexed by place after the last update
 };
 
 /// Returns the state as bytes, with a mark and a checksum, in the byte order of this machine.

@@ -133,7 +133,7 @@ class CurveStep {
   [[nodiscard]] constexpr std::size_t state() const { return packed_ >> kNumberBits; }
 
  private:
-  std::uint16_t packed_ = 0;  // 16 bits take half of the memory, so that tables stay in the caches
+  std::uint16_t packed_ = 0;  // 16 bits, so that the tables of steps stay in the caches
 };
 
 /// Enters a part of a cube. `halves` gives the part by a bit for each axis of the lattice; the first axis has

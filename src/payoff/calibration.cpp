@@ -146,7 +146,7 @@ Steadiness steadiness_of(std::span<const Steadiness> measurements) {
 /// Two sizes that differ by less than this factor count as the same cache.
 constexpr double kSameCache = 1.6;
 
-/// Returns the caches that costs belong to. A cache that was found and is within that factor of a reported
+/// Returns the caches that costs belong to. A found cache within a factor of `kSameCache` of a reported
 /// cache gets the reported size. The last cache does not, because a thread shares it with others.
 Caches effective_caches(const FoundCaches& found, const Caches& reported) {
   Caches caches;

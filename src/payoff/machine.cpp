@@ -36,7 +36,7 @@ Caches caches_in_sysfs() {
     std::ifstream level_file(folder + "level"), type_file(folder + "type"), size_file(folder + "size");
     int level = 0;
     std::string type;
-    Offset kilobytes = 0;  // Linux writes "48K"
+    Offset kilobytes = 0;  // Linux writes "48K"; reading a number stops at the K
     if (!(level_file >> level) || !(type_file >> type) || !(size_file >> kilobytes)) break;
     if (type != "Instruction") size_of_level[level] = kilobytes << 10;
   }

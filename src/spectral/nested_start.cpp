@@ -34,7 +34,7 @@ StartBlock nested_start(const Hierarchy& hierarchy, std::uint64_t seed, TimeLimi
   const auto& levels = hierarchy.levels();
   int level = static_cast<int>(levels.size()) - 1;
   StartBlock x;
-  int known = 0;  // number of columns
+  int known = 0;  // number of columns of x that are set
   if (hierarchy.has_exact_coarsest()) {
     x = hierarchy.coarsest_eigenvectors<kStartColumns>();
     known = std::min(kStartColumns, static_cast<int>(x.size()) - 1);

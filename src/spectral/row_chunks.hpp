@@ -45,8 +45,8 @@ class RowChunks {
 
   RowChunks() = default;
 
-  /// Chunks the rows of a graph: up to 16 chunks of at least `least_rows` rows, whatever the number of
-  /// threads; one chunk of all rows if so many chunks touch each other that threads would gain nothing.
+  /// Cuts the rows of a graph into up to 16 chunks of at least `least_rows` rows, for any number of
+  /// threads. Makes one chunk if so many chunks touch each other that threads would gain nothing.
   /// O(edges).
   explicit RowChunks(const Laplacian& laplacian, Index least_rows = kLeastRows);
 
