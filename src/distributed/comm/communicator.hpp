@@ -31,7 +31,7 @@ class Session {
   Session& operator=(const Session&) = delete;
   Session& operator=(Session&&) = delete;
 
-  /// Ends all processes. For a process that cannot go on while others may wait for it.
+  /// Ends all processes. Call it if this process cannot go on and others may wait for it.
   [[noreturn]] static void abort(int status) noexcept;
 };
 
@@ -43,7 +43,7 @@ struct SharedError : Error {
   using Error::Error;
 };
 
-/// Values to or from each rank: those of rank r are values[starts[r]] … values[starts[r + 1] − 1].
+/// Values to or from each rank: values[starts[r]] … values[starts[r + 1] − 1] belong to rank r.
 template <class T>
 struct Parcels {
   std::vector<T> values;
@@ -55,8 +55,8 @@ struct Parcels {
   }
 };
 
-/// Returns values in parcels, one for each rank. Within a parcel the values keep their sequence. O(values +
-/// ranks) time, plus that of the two functions.
+/// Returns the values sorted into parcels, one for each rank. The values of a rank keep their sequence.
+/// O(values + ranks) time, plus that of the two functions.
 ///
 /// @param rank_of   returns the rank of value k; called twice for each value
 /// @param value_of  returns value k
@@ -74,8 +74,8 @@ template <class RankOf, class ValueOf>
   return parcels;
 }
 
-/// A group of ranks. Every rank has to call all functions in the same sequence, except `handle`, `rank`,
-/// `size`, `is_root` and those of the chunk limit. Sums do not depend on timing.
+/// A group of ranks. Every rank has to call its functions in the same sequence, except `handle`, `rank`,
+/// `size`, `is_root`, `set_chunk_limit` and `chunk_limit`. Sums do not depend on timing.
 class Communicator {
  public:
   /// Makes a group of all ranks of the session or of an MPI communicator, which it duplicates.
@@ -94,12 +94,12 @@ class Communicator {
   /// Returns how many ranks share this one's memory, itself included.
   [[nodiscard]] int ranks_on_this_machine() const;
 
-  /// Sets the most bytes of one message, 1 … 2^31 − 1: MPI 3 counts them by an int.
+  /// Sets the maximum size of a message in bytes, 1 … 2^31 − 1: MPI 3 counts bytes by an int.
   void set_chunk_limit(Offset bytes) noexcept { chunk_limit_ = bytes; }
   [[nodiscard]] Offset chunk_limit() const noexcept { return chunk_limit_; }
 
-  /// Sends each rank its parcel, and returns those that the ranks sent to this one. Messages are chunked, so
-  /// that a parcel may have more than 2 GiB. O(values + ranks).
+  /// Sends one parcel to each rank and returns the parcels received. Messages are sent in chunks, so that a
+  /// parcel may have more than 2 GiB. O(values + ranks).
   ///
   /// @param values  values[starts[r]] … values[starts[r + 1] − 1] go to rank r
   /// @param starts  ranks + 1, ascending
@@ -127,7 +127,7 @@ class Communicator {
     return exchange(std::span<const T>(own), starts).values;
   }
 
-  /// Returns this rank's part of the root's values: rank r gets those at starts[r] … starts[r + 1] − 1.
+  /// Returns the values of the root that belong to this rank: rank r gets starts[r] … starts[r + 1] − 1.
   /// Throws as `exchange`.
   ///
   /// @param at_root  ignored on other ranks
@@ -153,7 +153,7 @@ class Communicator {
   /// Returns the root's texts, which must not contain zero bytes, on all ranks.
   [[nodiscard]] std::vector<std::string> broadcast(const std::vector<std::string>& at_root) const;
 
-  /// Returns the value of each rank, on all of them. O(ranks).
+  /// Returns the values of all ranks, in rank order, on every rank. O(ranks).
   template <class T>
   [[nodiscard]] std::vector<T> gathered(const T& own) const {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -220,7 +220,7 @@ class Communicator {
   [[nodiscard]] std::int64_t broadcast_count(std::int64_t at_root) const;
   void broadcast_bytes(std::byte* bytes, Offset count) const;
   void gather_bytes(const std::byte* own, std::byte* all, std::size_t bytes_each) const;
-  /// Throws on all ranks if one has a fault.
+  /// Throws SharedError on all ranks if any rank passes a fault.
   void settle(const std::exception_ptr& fault) const;
 
   MPI_Comm handle_ = MPI_COMM_NULL;

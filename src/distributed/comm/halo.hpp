@@ -13,22 +13,22 @@
 
 namespace meshorder::distributed {
 
-/// The numbers whose values this rank needs from their owners. It is set up once and can then fetch any
+/// The numbers whose values this rank needs from their owners. A Halo is set up once and can then fetch any
 /// number of arrays of values.
 class Halo {
  public:
   /// Every rank has to call it. O(numbers + ranks).
   ///
   /// @param layout   the owners of the numbers
-  /// @param numbers  whose values are needed, in any order; own ones and repeats are allowed
+  /// @param numbers  the numbers that this rank needs, in any order; it may own some, and repeats are allowed
   /// @throws as `Communicator::exchange`
   Halo(const Communicator& communicator, const Layout& layout, std::span<const GlobalIndex> numbers);
 
   /// Returns the numbers that this rank needs, ascending, each once.
   [[nodiscard]] const std::vector<GlobalIndex>& numbers() const noexcept { return wanted_.numbers(); }
-  /// Returns the own numbers that each rank needs, rank by rank; a number may occur several times.
+  /// Returns the numbers of this rank that each rank needs, rank by rank; a number may occur several times.
   [[nodiscard]] const std::vector<GlobalIndex>& asked_of_this_rank() const noexcept { return asked_.values; }
-  /// Returns the place of a number in `numbers()`. O(1) or O(log numbers), as `NumberSet`.
+  /// Returns the position of a number in `numbers()`. O(1) or O(log numbers), as `NumberSet`.
   [[nodiscard]] std::size_t position(GlobalIndex number) const { return wanted_.position(number); }
 
   /// Returns the owners' values, one for each of `numbers()`. Every rank has to call it.
@@ -59,19 +59,19 @@ class Halo {
 
  private:
   const Communicator& communicator_;
-  GlobalIndex first_;  ///< this rank's first own number
+  GlobalIndex first_;  ///< first number that this rank owns
   NumberSet wanted_;
-  Parcels<GlobalIndex> asked_;  ///< this rank's own numbers that each rank needs
+  Parcels<GlobalIndex> asked_;  ///< numbers of this rank that each rank needs
 };
 
-/// The values of a rank's own numbers and of a halo's numbers.
+/// The values of the numbers that a rank owns and of a halo's numbers.
 template <class T>
 class HaloValues {
  public:
   /// Every rank has to call it. Throws as `Communicator::exchange`.
   ///
   /// @param halo   must outlive this object
-  /// @param first  number of the first own value
+  /// @param first  first number that this rank owns
   HaloValues(const Halo& halo, GlobalIndex first, std::vector<T> own)
       : halo_(halo), first_(first), own_(std::move(own)), others_(halo.fetch(own_)) {}
 

@@ -10,7 +10,7 @@
 
 namespace meshorder::distributed {
 
-/// Number of a vertex, cell or entry among those of all ranks. Places within a rank are of type `Index`.
+/// Number of a vertex, cell or entry among those of all ranks. Positions within a rank have type `Index`.
 using GlobalIndex = std::int64_t;
 
 /// A division of consecutive numbers into ranges, one per rank, ascending: rank r owns begin(r) … end(r) − 1.

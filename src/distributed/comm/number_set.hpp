@@ -10,7 +10,7 @@
 
 namespace meshorder::distributed {
 
-/// A set of global numbers that maps each to its place in ascending sequence.
+/// A set of global numbers that maps each to its position in ascending sequence.
 class NumberSet {
  public:
   /// Takes numbers in any order; a number may occur several times. O(numbers) if their range is at most about
@@ -19,12 +19,12 @@ class NumberSet {
 
   /// Returns the numbers, ascending.
   [[nodiscard]] const std::vector<GlobalIndex>& numbers() const noexcept { return numbers_; }
-  /// Returns the place of a number of the set in `numbers()`. O(1), or O(log numbers) if the numbers are far
+  /// Returns the position of a number of the set in `numbers()`. O(1), or O(log numbers) if they are far
   /// apart.
   [[nodiscard]] std::size_t position(GlobalIndex number) const;
 
  private:
-  /// Numbers first_ + 64 k … first_ + 64 k + 63, a bit for each.
+  /// A bit for each of the numbers first_ + 64 k … first_ + 64 k + 63.
   struct Word {
     std::uint64_t bits = 0;
     std::size_t before = 0;  ///< count of the numbers in earlier words

@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
-/// Bytes of numbers whose type is known only at run time. The index of an alternative of `Values` gives the
-/// type.
+/// Conversions between bytes and numbers whose type is known only at run time. The type is given as the index
+/// of an alternative of `Values`.
 namespace meshorder::distributed {
 
 /// Calls `work` with a zero of a number type; does nothing for texts.
@@ -44,7 +44,7 @@ template <class Number>
       values);
 }
 
-/// Returns the numbers of a run-time type, stored in `bytes`, converted to Target. O(bytes).
+/// Returns the numbers that `bytes` holds in a run-time type, converted to Target. O(bytes).
 template <class Target>
 [[nodiscard]] std::vector<Target> numbers_of(const std::vector<std::byte>& bytes, std::size_t alternative) {
   std::vector<Target> result;

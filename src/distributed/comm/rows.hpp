@@ -9,7 +9,7 @@
 
 namespace meshorder::distributed {
 
-/// Rows of integers, which may also hold the bits of other numbers.
+/// Rows of 64-bit integers. An entry may also hold the bits of a real number.
 struct Rows {
   std::vector<Offset> offsets{0};  ///< rows + 1, ascending
   std::vector<GlobalIndex> entries;
@@ -35,8 +35,8 @@ struct Dispatch {
 /// rows of one rank are in the sequence of its dispatches. Every rank has to call it. O(entries +
 /// dispatches).
 ///
-/// @param rows        freed early, since the rows sent and the rows received are two more copies
-/// @param dispatches  freed early
+/// @param rows        freed before the exchange, since the rows sent and received are two more copies
+/// @param dispatches  freed before the exchange
 /// @throws as `Communicator::exchange`
 [[nodiscard]] Rows send_rows(const Communicator& communicator, Rows rows, std::vector<Dispatch> dispatches);
 

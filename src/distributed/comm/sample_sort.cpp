@@ -9,7 +9,7 @@
 namespace meshorder::distributed {
 namespace {
 
-constexpr Offset kSamplesPerRank = 64;  // enough for equal shares, up to a few %
+constexpr Offset kSamplesPerRank = 64;  // so many that the ranks' shares differ by a few % only
 
 /// Returns the entries at which the ranges of ranks 1, 2, … begin, chosen from samples of all ranks.
 std::vector<SortEntry> splitters(const Communicator& communicator, const std::vector<SortEntry>& sorted) {

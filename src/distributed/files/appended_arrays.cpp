@@ -56,7 +56,7 @@ std::string VtuXml::with_offsets(const std::function<Offset(Offset)>& moved, Off
     at = place.at + place.size;
   }
   result += std::string_view(text_).substr(at, text_.size() - 1 - at);
-  result.resize(static_cast<std::size_t>(bytes) - 1, ' ');  // pads, or cuts blanks that an earlier call added
+  result.resize(static_cast<std::size_t>(bytes) - 1, ' ');  // adds blanks, or cuts those of an earlier call
   return result + '_';
 }
 
@@ -101,7 +101,7 @@ std::vector<std::uint64_t> AppendedArrays::words(const vtk::VtuElement& element,
   return result;
 }
 
-/// Finds the bytes of an uncompressed array; the word before them is their number. Returns that number.
+/// Finds the bytes of an uncompressed array and returns their number, which is the word before them.
 std::uint64_t AppendedArrays::place_bytes(const vtk::VtuElement& element, const std::string& what,
                                           FilePart& part) {
   const std::uint64_t size = words(element, what, 1).front();

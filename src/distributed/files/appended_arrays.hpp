@@ -20,17 +20,17 @@ class VtuXml {
  public:
   VtuXml() = default;
 
-  /// @param text  of the file, up to and including the underscore
+  /// @param text  text of the file, up to and including the underscore
   /// @param file  the parsed file
   /// @throws InputError for an offset that is no integer ≥ 0
   VtuXml(std::string text, const vtk::VtuDocument& file);
 
   [[nodiscard]] const std::string& text() const noexcept { return text_; }
 
-  /// Returns the offsets, in the sequence of the text.
+  /// Returns the offsets in the sequence in which the text has them.
   [[nodiscard]] std::vector<Offset> offsets() const;
 
-  /// Returns the most bytes that the text can have with other offsets. The number stays the same for a text
+  /// Returns the maximum size of the text with any other offsets, in bytes. The result is the same for a text
   /// that `with_offsets` has padded to this size.
   [[nodiscard]] Offset most_bytes() const;
 
@@ -42,7 +42,7 @@ class VtuXml {
 
  private:
   struct Place {
-    std::size_t at;    ///< place of the first digit in the text
+    std::size_t at;    ///< position of the first digit in the text
     std::size_t size;  ///< number of digits
     Offset offset;
   };
@@ -56,14 +56,14 @@ class VtuXml {
 /// Finds arrays in the raw appended data of a .vtu file. Words before each array give its size.
 class AppendedArrays {
  public:
-  /// @param path        of the file
+  /// @param path        path of the file
   /// @param document    its XML; must outlive this object
-  /// @param first_byte  of the appended data
+  /// @param first_byte  first byte of the appended data in the file
   /// @param ranks       number of ranks that share the memory of uncompressed arrays
   /// @throws InputError if the file cannot be opened
   AppendedArrays(const std::string& path, const vtk::VtuDocument& document, Offset first_byte, int ranks);
 
-  /// Sets the place and the blocks of the array that an XML element describes. Returns the uncompressed size
+  /// Finds the bytes and the blocks of the array that an XML element describes. Returns the uncompressed size
   /// of the array, in bytes. O(blocks) time.
   ///
   /// @param bounds  receives the first byte of each compressed block, then the end of the last
@@ -79,11 +79,11 @@ class AppendedArrays {
 
   InputFile file_;
   const vtk::VtuDocument& document_;
-  Offset bytes_;  ///< of the file
+  Offset bytes_;  ///< size of the file
   Offset first_byte_;
   int ranks_;
   std::size_t word_;  ///< bytes of a word before an array
-  Offset at_ = 0;     ///< of the next byte to read
+  Offset at_ = 0;     ///< position of the next byte to read
 };
 
 }  // namespace meshorder::distributed

@@ -44,7 +44,7 @@ std::optional<FileHead> head_of(FileFacts::Kind kind, FileLayout layout, const s
   return head;
 }
 
-/// Returns whether the first offset of a file is 0; the part `offsets` begins with the second offset.
+/// Returns whether the first of a file's offsets is 0; the part `offsets` begins with the second one.
 bool begins_at_zero(const std::string& path, const FilePart& offsets) {
   std::vector<std::byte> first(static_cast<std::size_t>(offsets.row_size()));
   const std::size_t got = InputFile(path).read_at(static_cast<std::uint64_t>(offsets.at - offsets.row_size()),

@@ -28,15 +28,15 @@ struct FileFacts : FileSizes {
 /// The description of a file. For a .vtu file it comes from the XML and the words before the arrays; for a
 /// .vtkhdf file, and for the HDF5 file of an .xdmf file, from libhdf5.
 struct FileHead {
-  std::string path;  ///< of the file that has the parts: of an .xdmf file, its HDF5 file
+  std::string path;  ///< path of the file that has the parts: for an .xdmf file, its HDF5 file
   FileFacts facts;
-  std::vector<FilePart> parts;     ///< sorted by their place in the file
-  std::vector<std::string> names;  ///< of the parts in messages, by their numbers
+  std::vector<FilePart> parts;     ///< sorted by their first bytes
+  std::vector<std::string> names;  ///< names of the parts in messages, by part number
   std::vector<std::vector<Offset>>
-      blocks;  ///< of each part, by number: first byte of each block, then the end of the last
+      blocks;  ///< first byte of each block, then the end of the last, by part number
   VtuXml xml;
   std::string mold;                        ///< of a .vtkhdf file: result of `mold_of` for its arrays
-  std::shared_ptr<const SplitFile> files;  ///< of an .xdmf file
+  std::shared_ptr<const SplitFile> files;  ///< writer of an .xdmf file and its HDF5 file; else null
 };
 
 /// Returns whether the file name ends in .xdmf or .xmf.

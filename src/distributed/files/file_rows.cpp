@@ -36,7 +36,7 @@ BlockRange blocks_with(const FilePart& array, Offset begin, Offset end) {
   return {block_of(begin), block_of(end - 1) + 1};
 }
 
-/// Returns the first byte in the file of each block that this rank wants, then the end of the last one.
+/// Returns the first byte in the file of each block that this rank wants, then the end of the last block.
 std::vector<Offset> own_starts(const Communicator& communicator, const std::vector<Offset>& at_root,
                                BlockRange wanted) {
   Parcels<Offset> sent;
@@ -53,7 +53,7 @@ std::vector<Offset> own_starts(const Communicator& communicator, const std::vect
   return communicator.exchange(sent).values;
 }
 
-/// Moves bytes between ranks, so that each block is whole on the rank that had its first byte.
+/// Moves bytes between ranks, so that the rank with the first byte of a block gets the whole block.
 std::vector<std::byte> in_whole_blocks(const Communicator& communicator, const Layout& bytes,
                                        std::vector<std::byte> own, Offset block) {
   const GlobalIndex begin = bytes.begin(communicator.rank());
@@ -111,7 +111,7 @@ std::vector<std::byte> read_values(const Communicator& communicator, const Share
   }();
   communicator.together([&] {
     const vtk::VtuCompressor codec(compressor);
-    std::vector<std::byte> whole;  // of a block of which only a part is wanted
+    std::vector<std::byte> whole;  // a block of which only a part is wanted
     for (Offset b = range.first; b < range.end; ++b) {
       const Offset block_begin = b * array.block;
       const Offset block_end = b + 1 == array.blocks ? array.size() : block_begin + array.block;

@@ -22,8 +22,8 @@ struct PartName {
   const std::string& part;
 };
 
-/// Returns the values that move to this rank's places; `values` has one for each own row. Every rank has to
-/// call it. O(values). Throws as `RowMover::moved`.
+/// Returns the values that move to this rank's places; `values` has one for each row of this rank. Every rank
+/// has to call it. O(values). Throws as `RowMover::moved`.
 template <class Value>
 [[nodiscard]] std::vector<Value> moved_values(const Communicator& communicator, const RowMover& mover,
                                               const std::vector<Value>& values) {
@@ -40,7 +40,7 @@ template <class Value>
 /// also O(blocks).
 ///
 /// @param blocks  at the root: first byte of each block in the file, then the end of the last. Ignored on
-///                other ranks and if the file is not compressed
+///                other ranks, and on all ranks if the file is not compressed
 /// @throws SharedError if a rank cannot read or uncompress a block
 [[nodiscard]] std::vector<std::byte> read_values(const Communicator& communicator, const SharedFile& file,
                                                  const PartName& name, VtuEncoding::Compressor compressor,

@@ -28,7 +28,7 @@ namespace meshorder::distributed {
 /// "VTKHDF File Format".
 class FileSlices {
  public:
-  /// @param head  of all ranks; like `communicator`, it must outlive this object
+  /// @param head  as `shared_head` returned it; like `communicator`, it must outlive this object
   /// @throws SharedError if a rank cannot open the file
   FileSlices(const Communicator& communicator, const FileHead& head);
 
@@ -56,8 +56,8 @@ class FileSlices {
  private:
   /// Returns the VTK types of this rank's cells.
   [[nodiscard]] std::vector<int> types() const;
-  /// Reads the offsets of this rank's cells, counted from the first entry of these cells; returns that
-  /// entry's place.
+  /// Reads the offsets of this rank's cells, counted from the first entry of these cells; returns the index
+  /// of that entry in the file.
   [[nodiscard]] Offset read_offsets(MeshSlice& slice) const;
 
   const Communicator& communicator_;

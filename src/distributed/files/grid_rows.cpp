@@ -84,7 +84,7 @@ class WholeGrid {
   vtk::WriteContext context_;
   const Cells& cells_;
   std::vector<const DataArray*> arrays_;
-  std::map<std::string, std::int32_t> places_;  ///< place of each text in `texts()`
+  std::map<std::string, std::int32_t> places_;  ///< position of each text in `texts()`
 };
 
 }  // namespace

@@ -20,14 +20,14 @@ class MovedPart;
 struct GridRows {
   Layout vertices;
   Layout cells;
-  Rows cell_vertices;  ///< of the own cells: new numbers, in VTK's order
-  /// Returns the own rows of the k-th array of the piece in `xml`; for texts, their 32-bit places in `texts`.
+  Rows cell_vertices;  ///< vertices of this rank's cells: new numbers, in VTK's order
+  /// Returns this rank's rows of the k-th array of the piece in `xml`; for texts, 32-bit indices in `texts`.
   /// Must not be called for the connectivity and the offsets of cells. Every rank has to call it.
   std::function<std::vector<std::byte>(std::size_t k)> rows;
 
   // only at the root
   std::string xml;     ///< a .vtu file of one piece, of which only the arrays' elements are used
-  std::string fields;  ///< its <FieldData> with all values inline; empty if they are inline in `xml`
+  std::string fields;  ///< its <FieldData> with all values inline; empty if `xml` has them inline
   std::vector<std::string> texts;
 };
 

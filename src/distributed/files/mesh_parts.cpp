@@ -32,8 +32,8 @@ Incidence items_of_parts(Index parts, Index items, const ForParts& for_parts) {
   return result;
 }
 
-/// Returns the place of each part's first vertex among the vertices that a rank has, then the end of the last
-/// part.
+/// Returns the position of each part's first vertex among the vertices that a rank has, then the end of the
+/// last part.
 std::vector<GlobalIndex> local_starts(const std::vector<GlobalIndex>& vertices,
                                       const std::vector<GlobalIndex>& part_starts) {
   std::vector<GlobalIndex> result;
@@ -88,7 +88,7 @@ void MeshParts::find_own(const Mesh& mesh, const std::vector<GlobalIndex>& part_
   vertices_ = vertices_of_parts(mesh, cells_, part_starts);
   parts_of_vertices_ = transposed(vertices_);
   for (Index part = 0; part < parts; ++part) {
-    // move the own vertices, which are a range of numbers, to the front
+    // move the vertices that belong to the part, a range of numbers, to the front
     const auto begin = vertices_.vertices.begin() + vertices_.offsets[part];
     const auto end = vertices_.vertices.begin() + vertices_.offsets[static_cast<std::size_t>(part) + 1];
     const auto is_own = [&](Index vertex) { return part_of(vertex, part_starts) == part; };

@@ -13,15 +13,15 @@
 namespace meshorder::distributed {
 
 /// The cells and vertices of the parts of a mesh, without ghost cells. A cell is in the part of its largest
-/// vertex. A vertex is in each part whose cells use it. If no cell uses it, it is in the part to which its
-/// number belongs. A rank has the cells of its own parts only, and knows which other parts share their
+/// vertex. A vertex is in each part whose cells use it, or, if no cell uses it, in the part to which its
+/// number belongs. A rank has only the cells of its own parts, and knows which other parts share their
 /// vertices. Vertices and cells are numbered as in the rank's share of the mesh.
 class MeshParts {
  public:
   /// Every rank has to call it. O(entries · log parts).
   ///
   /// @param mesh         this rank's share of the mesh, as in `MeshShare`
-  /// @param numbers      of its vertices and cells
+  /// @param numbers      new numbers of the vertices and cells of `mesh`
   /// @param part_starts  as in `part_of`
   /// @throws as `Communicator::exchange`
   MeshParts(const Communicator& communicator, const Mesh& mesh, const ShareNumbers& numbers,
@@ -30,8 +30,8 @@ class MeshParts {
   [[nodiscard]] Index size() const noexcept { return cells_.size(); }
   /// Returns the cells of a part, ascending.
   [[nodiscard]] std::span<const Index> cells(Index part) const { return cells_[part]; }
-  /// Returns the vertices of a part: first its own vertices, then vertices of other parts. Both lists ascend,
-  /// so that the second is grouped by part.
+  /// Returns the vertices of a part: first those that belong to the part, then those of other parts. Both
+  /// lists ascend, so that the second is grouped by part.
   [[nodiscard]] std::span<const Index> vertices(Index part) const { return vertices_[part]; }
   /// Returns the parts that have a vertex, on any rank, ascending.
   [[nodiscard]] std::span<const Index> parts_with(Index vertex) const { return parts_of_vertices_[vertex]; }
@@ -43,9 +43,9 @@ class MeshParts {
   void find_sharing_parts(const Communicator& communicator, const ShareNumbers& numbers);
 
   std::vector<Index> part_of_cells_;
-  Incidence cells_;              ///< of each part
-  Incidence vertices_;           ///< of each part
-  Incidence parts_of_vertices_;  ///< of each vertex
+  Incidence cells_;              ///< cells of each part
+  Incidence vertices_;           ///< vertices of each part
+  Incidence parts_of_vertices_;  ///< parts that have each vertex
 };
 
 /// Extracts the parts of a mesh, with the arrays, sets and ids of their cells and vertices.
@@ -63,14 +63,14 @@ class PartCutter {
   void cut_cells(Index part, Mesh& piece) const;
   void cut_data(Index part, Mesh& piece) const;
   void cut_sets(Index part, Mesh& piece) const;
-  /// Returns the places within the part of these vertices or cells, in their sequence.
+  /// Returns the positions within the part of these vertices or cells, in their sequence.
   [[nodiscard]] std::vector<Index> placed(Association association, std::span<const Index> numbers) const;
 
   const Mesh& mesh_;
   const MeshParts& parts_;
-  std::vector<Incidence> rows_;       ///< of each part, by array; empty for dense arrays
-  std::vector<Incidence> members_;    ///< of each part, by set: places in the set's list of members
-  std::vector<Index> vertex_places_;  ///< places in the part being cut; stale for vertices not in it
+  std::vector<Incidence> rows_;       ///< rows of each part, by array; empty for dense arrays
+  std::vector<Incidence> members_;    ///< positions of each part's members in the set's list, by set
+  std::vector<Index> vertex_places_;  ///< positions in the part being cut; stale for vertices not in it
   std::vector<Index> cell_places_;
 };
 

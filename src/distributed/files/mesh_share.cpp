@@ -64,9 +64,9 @@ class ShareMaker {
   }
 
  private:
-  /// Finds the cells of the own parts and returns the vertices of each.
+  /// Finds the cells of this rank's parts and returns the vertices of each cell.
   ///
-  /// @param vertices  of the cells of the slice
+  /// @param vertices  vertices of the cells of the slice
   [[nodiscard]] Rows own_cells(Rows vertices, const Layout& layout) {
     const Layout ranks = ranks_of_parts(index_size(part_starts_) - 1, communicator_.size());
     Rows numbers;
@@ -83,7 +83,7 @@ class ShareMaker {
     return send_rows(communicator_, std::move(vertices), std::move(dispatches));
   }
 
-  /// Finds the vertices of the cells, and the vertices of the own parts that no cell of any rank uses.
+  /// Finds the vertices of the cells, and the vertices of this rank's parts that no cell of any rank uses.
   void number_vertices(const Rows& cells) {
     const Layout& layout = share_.numbers.layout;
     const std::vector<GlobalIndex> used =
@@ -133,7 +133,7 @@ class ShareMaker {
   /// Returns the vertices or cells of the share that are in a list of the file, in the sequence of the list.
   ///
   /// @param members  members of the list that are in the part
-  /// @param entries  their places in the list, ascending; empty if the sequence does not matter
+  /// @param entries  positions of these members in the list, ascending; empty if the sequence does not matter
   [[nodiscard]] std::vector<Index> listed(Association of, const std::vector<Index>& members,
                                           const std::vector<Index>& entries) const {
     const std::vector<std::int32_t> marks = communicator_.together([&] {

@@ -12,7 +12,7 @@ namespace meshorder::distributed {
 
 /// The new numbers, in the whole mesh, of the vertices and cells that a rank has.
 struct ShareNumbers {
-  Layout layout;                      ///< for exchanges: the owners of the vertices of the whole mesh
+  Layout layout;                      ///< the owners of the vertices of the whole mesh, for exchanges
   std::vector<GlobalIndex> vertices;  ///< ascending
   std::vector<GlobalIndex> cells;     ///< ascending
 
@@ -28,7 +28,7 @@ struct MeshShare {
   /// order.
   Mesh mesh;
   ShareNumbers numbers;
-  bool has_vertex_ids = false;  ///< on any rank
+  bool has_vertex_ids = false;  ///< whether any rank has vertex ids
   bool has_cell_ids = false;
 };
 

@@ -18,7 +18,7 @@ namespace meshorder::distributed {
 /// Returns a .vtu file of one point and one cell that declares the arrays and fields of a mesh.
 ///
 /// @param arrays    one row of each array; arrays on points come before arrays on cells
-/// @param metadata  of the mesh; its encoding of .vtu files is ignored
+/// @param metadata  metadata of the mesh; its encoding of .vtu files is ignored
 /// @param in_order_of_vtk_9  whether higher-order hexahedra have VTK 9's node order; sets the file's version
 /// @param notes     receives notes on data that .vtu files store in another form
 [[nodiscard]] std::string mold_of(std::vector<DataArray> arrays, vtk::VtkMetadata metadata,

@@ -42,10 +42,10 @@ void copy_bytes(const Communicator& communicator, const SharedFile& in, Offset b
   }
 }
 
-/// Maps places in an old file to places in a new one.
+/// Maps positions of bytes in an old file to positions in a new one.
 class NewPlaces {
  public:
-  /// Takes the first byte after the XML in each file.
+  /// Takes the position of the first byte after the XML in each file.
   NewPlaces(Offset old_begin, Offset new_begin) : moves_{{old_begin, new_begin}} {}
 
   /// Adds a move: bytes of the old file from `old_begin` on, up to the next move, are in the new file from

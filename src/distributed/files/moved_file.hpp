@@ -22,7 +22,7 @@ namespace meshorder::distributed {
 struct SliceFile {
   std::string path;  ///< temporary path, until it is complete
   std::string name;  ///< final name, also in messages
-  // of the HDF5 file that belongs to an .xdmf file
+  // names of the HDF5 file that belongs to an .xdmf file, as above
   std::string data;
   std::string name_of_data;
 };
@@ -30,9 +30,9 @@ struct SliceFile {
 /// The mesh of a file in its new order. Every rank has to call all functions; they throw SharedError if a
 /// rank cannot read or write. Each array is read when its rows are needed, the cells once.
 ///
-/// The new file is the old one with the rows of its arrays in their new places; everything else is copied
-/// byte by byte, except the offsets of arrays that follow a compressed array. A new .xdmf file and its HDF5
-/// file are the same as those of the serial writer.
+/// The new file is the old one with the rows of its arrays in their new order. Everything else is copied byte
+/// by byte, except the offsets of arrays that follow a compressed array. A new .xdmf file and its HDF5 file
+/// are the same as those that the serial writer makes.
 class MovedFile {
  public:
   /// Reads the shapes of the cells. `communicator`, `head` and `order` must outlive this object.
@@ -52,7 +52,7 @@ class MovedFile {
   /// Returns the points and cells in this rank's range of new places. O(size of the slice).
   [[nodiscard]] MeshSlice slice();
 
-  /// Returns the mesh, valid as long as this object; it takes the cells, so call it last. O(size of the
+  /// Returns the mesh, which is valid as long as this object. Takes the cells, so call it last. O(size of the
   /// slice).
   [[nodiscard]] GridRows grid();
 

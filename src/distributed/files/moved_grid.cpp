@@ -80,13 +80,13 @@ class PartGrid {
   struct Array {
     enum class Source : std::uint8_t { data, set, ids };
     Source source;
-    std::size_t number;  ///< place among the mesh's arrays or sets
+    std::size_t number;  ///< index among the mesh's arrays or sets
     Association association;
     std::size_t type;  ///< number type: index of an alternative of Values
     Index components;
   };
 
-  /// Returns the place, from 1 on, of each member of the part among all members of a set; empty if the
+  /// Returns the position, from 1 on, of each member of the part among all members of a set; empty if the
   /// members of the whole set ascend in the new order.
   [[nodiscard]] std::vector<std::int32_t> ranks_in_set(std::size_t set) const {
     constexpr GlobalIndex kNone = -1;
@@ -108,7 +108,7 @@ class PartGrid {
     };
     PlacesInList own;
     for (GlobalIndex& place : listed) {
-      if (place == kNone) continue;  // a member that occurs earlier in the list
+      if (place == kNone) continue;  // the member occurs earlier in the list
       if (own.members++ == 0) own.first = place;
       own.ascends = own.ascends && place > own.last;
       own.last = place;
@@ -158,8 +158,8 @@ class PartGrid {
     }
   }
 
-  /// Returns for each vertex or cell of the part its mark for a set: its place in the set or 1; 0 if it is
-  /// not a member.
+  /// Returns the mark of each vertex or cell of the part for a set: 0 if it is not a member, else its
+  /// position in the set or 1.
   [[nodiscard]] std::vector<std::byte> marks_of_set(const Array& array) const {
     const std::vector<std::int32_t>& ranks = set_ranks_[array.number];
     const std::vector<Index>& members = moved_.part().mesh.sets[array.number].members;
@@ -171,7 +171,7 @@ class PartGrid {
 
   const Communicator& communicator_;
   MovedPart& moved_;
-  std::vector<std::vector<std::int32_t>> set_ranks_;  ///< place of each member in its set; empty: mark with 1
+  std::vector<std::vector<std::int32_t>> set_ranks_;  ///< rank of each member in its set; empty: mark with 1
   std::vector<Array> arrays_;
   std::vector<std::uint8_t> types_;  ///< VTK cell types
 };

@@ -112,9 +112,9 @@ void MovedPart::unify_arrays() {
   }
 }
 
-/// Finds whether there are ids that differ from the places, and the new place of each id. In the new order,
-/// ids ascend along the vertices and along the cells of each dimension or block. If the order moves nothing,
-/// ids keep their places.
+/// Drops ids that are 1, 2, … or not unique; else finds the new place of each id. In the new order, ids
+/// ascend along the vertices and along the cells of each dimension or block. If the order moves nothing, ids
+/// keep their places.
 void MovedPart::settle_ids(Entities& owner, std::vector<std::int64_t>& ids, const std::string& name,
                            Notes& notes) {
   if (name.empty() || are_places(communicator_, owner.layout, ids)) return ids.clear();

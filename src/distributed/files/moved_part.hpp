@@ -26,8 +26,8 @@ class MovedPart {
   /// Every rank has to call it. O(size of the part).
   ///
   /// @param communicator  must outlive this object
-  /// @param part        of this rank: an equal share of the vertices and of the cells. Arrays must have the
-  ///                    same names on all ranks
+  /// @param part        the part that this rank has read: an equal share of the vertices and of the cells.
+  ///                    Arrays must have the same names on all ranks
   /// @param order       the mesh's new order
   /// @param block_ends  as in `places_by_block`; empty: cells keep the places of their dimension
   /// @param notes       receives, at the root, notes on members and numbers that the file gives twice
@@ -43,8 +43,8 @@ class MovedPart {
   [[nodiscard]] const std::vector<GlobalIndex>& new_places(Association association) const {
     return entities(association).places;
   }
-  /// Returns the file's ids of the vertices or cells of the part, in their old order; null if the ids are
-  /// just the places.
+  /// Returns the file's ids of the vertices or cells of the part, in their old order; null if the ids are 1,
+  /// 2, … or not unique.
   [[nodiscard]] const std::vector<std::int64_t>* ids(Association association) const;
 
   /// Returns the points and cells in this rank's range of new places, with the node order of a Mesh. Every
@@ -53,10 +53,10 @@ class MovedPart {
   /// Returns the cells in this rank's range of new places, with the new numbers of their vertices. Every rank
   /// has to call it. O(entries).
   ///
-  /// @param cells  of the part; freed early
+  /// @param cells  vertices of the part's cells; freed early
   [[nodiscard]] Rows moved_cells(Rows cells) const;
-  /// Returns the rows of this rank's places. `rows` has `width` bytes for each vertex or cell of the part.
-  /// Every rank has to call it. O(bytes).
+  /// Returns the rows that move to this rank's places. `rows` has `width` bytes for each vertex or cell of
+  /// the part. Every rank has to call it. O(bytes).
   [[nodiscard]] std::vector<std::byte> moved(Association association, std::span<const std::byte> rows,
                                              Offset width) const;
   /// As above, for the k-th array of the mesh; NaN or 0 for a vertex or cell without a row.

@@ -73,7 +73,7 @@ bool knows_all(const Mesh& mesh, const ExodusMetadata& metadata) {
 
 // ---- data that only pieces have
 
-/// Adds integers along a dimension, or one integer if `dimension` is empty; nothing without values.
+/// Adds integers along a dimension, or one integer if `dimension` is empty. Adds nothing without values.
 void add_integers(ExodusMetadata& metadata, std::string_view name, std::string_view dimension,
                   const std::vector<std::int64_t>& values) {
   if (values.empty()) return;
@@ -137,8 +137,8 @@ std::vector<std::int64_t> counts_of_sets(const Mesh& mesh) {
 
 /// Returns the Exodus II side number of a facet of an element.
 ///
-/// @param facet  place in `facets(shape, …)`
-/// @param type   of its block
+/// @param facet  index in `facets(shape, …)`
+/// @param type   element type of its block
 int side_of_facet(Shape shape, int facet, int coordinates, std::string_view type) {
   constexpr std::array<int, 5> kPyramid{5, 1, 2, 3, 4};
   constexpr std::array<int, 5> kWedge{4, 5, 1, 2, 3};
@@ -156,10 +156,10 @@ int side_of_facet(Shape shape, int facet, int coordinates, std::string_view type
   }
 }
 
-/// The blocks of a mesh that have cells, in the order of the cells.
+/// The blocks of a mesh that have cells, in the order of the mesh's cells.
 struct Blocks {
   std::vector<const BlockRecord*> records;
-  std::vector<GlobalIndex> ends;  ///< number of the first cell after each
+  std::vector<GlobalIndex> ends;  ///< number of the first cell after each block
 };
 
 /// Returns the blocks of a whole mesh; no blocks if the cells are not in blocks of the metadata or not in the
@@ -193,9 +193,9 @@ Blocks blocks_of(const ExodusMetadata& metadata, const std::vector<GlobalIndex>&
 struct OrderedMesh {
   const Mesh& mesh;  ///< has Exodus II metadata
   const ShareNumbers& numbers;
-  const std::vector<GlobalIndex>& element_numbers;  ///< of the cells in the whole mesh's file, from 0 on
-  Blocks blocks;                                    ///< of the whole mesh
-  std::vector<std::int64_t> set_counts;             ///< of the whole mesh
+  const std::vector<GlobalIndex>& element_numbers;  ///< from 0: number of each cell in the whole file
+  Blocks blocks;                                    ///< blocks of the whole mesh
+  std::vector<std::int64_t> set_counts;             ///< sizes of the sets of the whole mesh
   bool has_vertex_ids;
   bool has_cell_ids;
 };
@@ -297,7 +297,7 @@ class NemesisPieces {
     add_node_maps(part, metadata);
     add_element_maps(part, metadata);
     piece.format_metadata = std::make_shared<const ExodusMetadata>(std::move(metadata));
-    Notes ignored;  // they repeat the notes on the whole mesh
+    Notes ignored;  // the notes on a piece repeat those on the whole mesh
     exodus::write(piece, file, ignored);
   }
 
@@ -362,9 +362,9 @@ class NemesisPieces {
     add("elem", cells.size(), [&](std::size_t k) { return at_border.contains(cells[k]); });
   }
 
-  /// Adds the communication maps of nodes, one for each part that shares nodes with this one. A map lists
-  /// places of nodes in the piece, sorted by the nodes' numbers in the whole mesh, so that the maps of both
-  /// parts match.
+  /// Adds the communication maps of nodes, one for each part that shares nodes with this part. A map lists
+  /// positions of nodes in the piece, sorted by the nodes' numbers in the whole mesh, so that the maps of
+  /// both parts match.
   void add_node_maps(Index part, ExodusMetadata& metadata) const {
     const auto vertices = parts_.vertices(part);
     std::vector<Index> ascending = index_range(0, index_size(vertices));
@@ -379,7 +379,7 @@ class NemesisPieces {
     add_maps(metadata, "n", maps);
   }
 
-  /// Adds the communication maps of elements, one for each part that shares a side with elements of this one.
+  /// Adds the communication maps of elements, one for each part that shares an element side with this part.
   void add_element_maps(Index part, ExodusMetadata& metadata) const {
     const auto cells = parts_.cells(part);
     std::map<Index, std::vector<std::int64_t>> maps;
@@ -406,7 +406,7 @@ class NemesisPieces {
   exodus::ExodusMetadata whole_;  ///< data on the whole mesh, the same in all pieces
 };
 
-/// A mesh in the form of an Exodus II file, and the places of its cells in the given mesh.
+/// A mesh in the form of an Exodus II file, and the indices of its cells in the given mesh.
 struct Held {
   Mesh mesh;
   std::vector<GlobalIndex> given_cells;
@@ -435,7 +435,7 @@ GlobalIndex write_nemesis_pieces(const Mesh& mesh, const std::vector<GlobalIndex
                                  Notes& notes) {
   const ShareNumbers numbers = ShareNumbers::of_whole(mesh);
   const ExodusMetadata* const own = exodus::own_metadata(mesh);
-  std::optional<Held> other;  // if the mesh is not in the form of an Exodus II file
+  std::optional<Held> other;  // set if the mesh is not in the form of an Exodus II file
   if (own == nullptr || blocks_of(mesh).records.empty() || !knows_all(mesh, *own)) other = held(mesh, notes);
   const Mesh& source = other ? other->mesh : mesh;
   Blocks blocks = blocks_of(source);

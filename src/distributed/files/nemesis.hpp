@@ -22,10 +22,10 @@ namespace meshorder::distributed {
 /// on Parallel Computers" (Sandia, 1998), and the names of dimensions and variables in exodusII_int.h of
 /// SEACAS, https://sandialabs.github.io/seacas-docs/.
 ///
-/// @param mesh         in its new order; Exodus II must be able to hold its cells
+/// @param mesh         the mesh in its new order; Exodus II must be able to hold its cells
 /// @param part_starts  as in `part_of`
-/// @param paths        of existing files, one for each part
-/// @param names        of the files in messages
+/// @param paths        paths of existing files, one for each part
+/// @param names        names of the files in messages
 /// @param notes        receives notes on data that Exodus II stores in another form
 /// @return number of vertices of all pieces minus that of the mesh: vertices on borders are in several pieces
 /// @throws InputError if a file cannot be written; Unavailable in a build without netCDF
@@ -36,8 +36,8 @@ GlobalIndex write_nemesis_pieces(const Mesh& mesh, const std::vector<GlobalIndex
 /// As above, for a mesh from an Exodus II file of which each rank has a part; each rank writes the pieces of
 /// its own parts. Every rank has to call it. O(size of the part + size of the share · log).
 ///
-/// @param moved       in its new order by blocks
-/// @param block_ends  of the file, as in `places_by_block`
+/// @param moved       the mesh in its new order by blocks
+/// @param block_ends  ends of the file's blocks, as in `places_by_block`
 /// @throws SharedError if a file cannot be written; and as `Communicator::exchange`
 GlobalIndex write_nemesis_pieces(const Communicator& communicator, MovedPart moved,
                                  const std::vector<GlobalIndex>& block_ends,

@@ -17,7 +17,7 @@ namespace {
 struct Candidate {
   std::array<GlobalIndex, 4> corners;  ///< descending; −1 after the last
   GlobalIndex cell;
-  Index part;  ///< of the cell
+  Index part;  ///< part of the cell
   int facet;
 
   [[nodiscard]] auto key() const { return std::tie(corners, cell, facet); }
@@ -26,7 +26,7 @@ struct Candidate {
 /// A facet shared with another part, to be sent to the rank of its cell's part.
 struct Match {
   GlobalIndex cell;
-  Index part;   ///< of the cell
+  Index part;   ///< part of the cell
   Index other;  ///< part of the cell on the other side
   int facet;
 };

@@ -25,8 +25,8 @@ struct BorderFacet {
 /// O(entries + f log f) time for f facets between parts.
 ///
 /// @param mesh     this rank's share of the mesh, as in `MeshShare`
-/// @param numbers  of its vertices and cells
-/// @param parts    of `mesh`
+/// @param numbers  new numbers of the vertices and cells of `mesh`
+/// @param parts    parts of `mesh`
 /// @return the facets of each part (only of this rank's parts), sorted by the other part
 /// @throws as `Communicator::exchange`
 [[nodiscard]] std::vector<std::vector<BorderFacet>> facets_between(const Communicator& communicator,

@@ -12,7 +12,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Sets `parts` to the parts of a cell's vertices, ascending, each once; the last one is the cell's own part.
+/// Sets `parts` to the parts of a cell's vertices, ascending, each once; the last one is the cell's part.
 void find_parts(std::span<const GlobalIndex> vertices, const std::vector<GlobalIndex>& starts,
                 std::vector<Index>& parts) {
   parts.clear();
@@ -55,7 +55,7 @@ struct CellOfPiece {
   Offset row;
 };
 
-/// Sorts the own cells first, then the others by their parts; stable.
+/// Sorts the cells of the part first, then the others by their parts; stable.
 void sort_own_first(std::vector<CellOfPiece>& cells, Index part) {
   std::stable_sort(cells.begin(), cells.end(), [&](const CellOfPiece& a, const CellOfPiece& b) {
     if ((a.part == part) != (b.part == part)) return a.part == part;
@@ -63,7 +63,7 @@ void sort_own_first(std::vector<CellOfPiece>& cells, Index part) {
   });
 }
 
-/// Makes a piece from its cells and its own vertices begin … end − 1; a row has a cell's number and vertices.
+/// Makes a piece from its cells and the vertices begin … end − 1; a row has a cell's number and vertices.
 PieceContents piece_of(Index part, GlobalIndex begin, GlobalIndex end, const Rows& rows,
                        const std::vector<CellOfPiece>& cells) {
   PieceContents piece;

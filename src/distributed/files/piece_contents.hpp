@@ -13,16 +13,16 @@ namespace meshorder::distributed {
 /// The contents of a part's piece: the part's vertices and cells, and ghosts, which belong to other parts.
 struct PieceContents {
   Index part = 0;
-  /// New numbers of the part's own vertices, ascending, then of the vertices of other parts that the cells
-  /// use, ascending and therefore grouped by part.
+  /// New numbers of the vertices of the part, ascending; then those of the vertices of other parts that the
+  /// cells use, ascending and therefore grouped by part.
   std::vector<GlobalIndex> vertices;
   GlobalIndex own_vertices = 0;
-  /// New numbers of the part's own cells, ascending, then of the cells of other parts, sorted by part, then
-  /// by number.
+  /// New numbers of the cells of the part, ascending; then those of cells of other parts, sorted by part,
+  /// then by number.
   std::vector<GlobalIndex> cells;
   GlobalIndex own_cells = 0;
   std::vector<Index> cell_parts;  ///< part of each cell
-  Rows cell_vertices;             ///< of each cell, as places among `vertices`
+  Rows cell_vertices;             ///< vertices of each cell, as positions in `vertices`
 
   [[nodiscard]] GlobalIndex ghost_vertices() const { return std::ssize(vertices) - own_vertices; }
   [[nodiscard]] GlobalIndex ghost_cells() const { return std::ssize(cells) - own_cells; }
@@ -48,9 +48,9 @@ std::vector<T> sent_to_ranks(const Communicator& communicator, const std::vector
 /// Finds the contents of the pieces of this rank's parts. A cell is in the part of its largest vertex, and is
 /// a ghost in the parts of its other vertices. Every rank has to call it. O(entries · log parts).
 ///
-/// @param vertex_count   of the whole mesh
+/// @param vertex_count   number of vertices of the whole mesh
 /// @param cells          the owners of the cells, by new numbers
-/// @param cell_vertices  new numbers of the vertices of each own cell, at least one
+/// @param cell_vertices  new numbers of the vertices of each cell of this rank, at least one
 /// @param part_starts    first new number of each part, then the end of the last part
 /// @param with_ghosts    whether a piece has the cells of other parts that use vertices of its part
 /// @throws as `Communicator::exchange`

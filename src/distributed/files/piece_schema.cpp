@@ -29,7 +29,7 @@ constexpr std::string_view kGlobalIds = "GlobalIds";  // VTK's name of the role
 /// Tags of the sections, in the order of a piece.
 constexpr std::array<std::string_view, 4> kSections{"PointData", "CellData", "Points", "Cells"};
 
-/// Returns the place of an array's section in `kSections`.
+/// Returns the index of an array's section in `kSections`.
 std::size_t section_of(const PieceArray& array) {
   return (array.role == Role::data ? 0U : 2U) + (array.is_on_vertices() ? 0U : 1U);
 }

@@ -17,9 +17,9 @@ struct VtuElement;
 
 namespace meshorder::distributed {
 
-/// An array of the pieces: a part whose place in each piece is not known yet. If the source is `rows` or
-/// `texts`, `number` is the place among the arrays of the mesh's file. If it is `texts`, `type` is the type
-/// of places in the list of texts.
+/// An array of the pieces: a part whose first byte in each piece is not known yet. If the source is `rows` or
+/// `texts`, `number` is its index among the arrays of the mesh's file. If it is `texts`, `type` is the type
+/// of positions in the list of texts.
 struct PieceArray : FilePart {
   enum class Source : std::uint8_t {
     rows,          ///< an array of numbers of the mesh
@@ -27,7 +27,7 @@ struct PieceArray : FilePart {
     global_ids,    ///< new numbers in the whole mesh, from 0 on
     ghost_type,    ///< VTK's ghost flags: 1 for vertices and cells of other parts
     part,          ///< the part that owns a vertex or cell
-    connectivity,  ///< places of the cells' vertices
+    connectivity,  ///< positions of the cells' vertices in the piece
     offsets,       ///< ends of the cells in the connectivity
   };
   Source source = Source::rows;
@@ -41,9 +41,9 @@ struct PieceArray : FilePart {
 /// The properties that all pieces of a mesh have in common, made from the XML of its file.
 class PieceSchema {
  public:
-  /// @param xml     of a .vtu file of one piece, as in `GridRows`
-  /// @param fields  as in `GridRows`
-  /// @param ghosts  layers of ghost cells
+  /// @param xml     text of a .vtu file of one piece, as in `GridRows`
+  /// @param fields  text of the <FieldData>, as in `GridRows`
+  /// @param ghosts  number of layers of ghost cells
   PieceSchema(const std::string& xml, std::string fields, int ghosts);
 
   /// Returns the arrays in the order in which a piece has them.
@@ -81,7 +81,7 @@ class PieceSchema {
 
   std::string version_;
   std::string fields_;
-  std::array<std::string, 4> attributes_;  ///< of the sections
+  std::array<std::string, 4> attributes_;  ///< attributes of the elements of the sections
   std::vector<PieceArray> arrays_;
   std::vector<std::string> replaced_;
   std::vector<vtk::ArrayRole> roles_;

@@ -45,7 +45,7 @@ std::vector<std::byte> rows_of(const std::vector<std::byte>& rows, Offset width,
   return result;
 }
 
-/// Returns the texts at these places, each followed by a zero.
+/// Returns the texts at these positions of the list, each followed by a zero.
 std::vector<std::byte> spelt_out(const std::vector<std::byte>& places,
                                  const std::vector<std::string>& texts) {
   std::vector<std::byte> result;
@@ -59,7 +59,7 @@ std::vector<std::byte> spelt_out(const std::vector<std::byte>& places,
   return result;
 }
 
-/// Returns the values of an array that a piece does not take from the mesh.
+/// Returns the values of an array that is made for a piece, not taken from the mesh.
 std::vector<std::byte> own_values(const PieceArray& array, const PieceContents& piece,
                                   const std::vector<GlobalIndex>& part_starts) {
   const std::vector<GlobalIndex>& numbers = array.is_on_vertices() ? piece.vertices : piece.cells;

@@ -33,8 +33,8 @@ struct PiecesReport {
 ///
 /// @param part_starts  first new number of each part, then the end of the last part
 /// @param with_ghosts  whether a piece has the cells of other parts that use vertices of its part
-/// @param paths        of the files, one for each part
-/// @param names        of the files in messages
+/// @param paths        paths of the files, one for each part
+/// @param names        names of the files in messages
 /// @throws SharedError if a rank cannot write, as on a full disk, and for a piece too large for a file with
 ///         32-bit sizes
 PiecesReport write_pieces(const Communicator& communicator, const GridRows& grid, const PieceSchema& schema,
@@ -51,8 +51,8 @@ PiecesReport write_pieces(const Communicator& communicator, const GridRows& grid
 ///
 /// Format: "VTKHDF File Format", version 1.0.
 ///
-/// @param path  of the file
-/// @param name  of the file in messages
+/// @param path  path of the file
+/// @param name  name of the file in messages
 /// @throws SharedError if a rank cannot write, as on a full disk, and for higher-order hexahedra with the
 ///         node order of VTK before version 9; Unavailable in a build without HDF5
 PiecesReport write_pieces_to_vtkhdf(const Communicator& communicator, const GridRows& grid,

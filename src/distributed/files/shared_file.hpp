@@ -38,7 +38,7 @@ class SharedFile {
   /// @throws SharedError if a rank cannot, as on a full disk
   void write(Offset at, std::span<const std::byte> bytes) const;
 
-  /// Writes what is buffered and closes the file.
+  /// Writes buffered bytes and closes the file.
   ///
   /// @throws SharedError if a rank cannot
   void close();

@@ -38,10 +38,10 @@ namespace meshorder::distributed {
 /// Weight of an element: divisible by the vertex counts of most shapes, so that shares are integers.
 inline constexpr GlobalIndex kElementWeight = 840;
 
-/// Returns the weight of each own vertex: its shares in all elements that use it. Every rank has to call it.
-/// O(entries · log entries) at most.
+/// Returns the weight of each vertex of this rank: the sum of its shares in all elements that use it. Every
+/// rank has to call it. O(entries · log entries) at most.
 ///
-/// @param layout    of the vertices
+/// @param layout    the owners of the vertices
 /// @param elements  vertices of the elements on this rank; each element is on one rank
 /// @throws as `Communicator::exchange`
 [[nodiscard]] std::vector<GlobalIndex> shares_in_elements(const Communicator& communicator,
@@ -50,8 +50,8 @@ inline constexpr GlobalIndex kElementWeight = 840;
 /// Returns the weight of the heaviest part relative to the mean; 1 without weights. Every rank has to call
 /// it. O(vertices + parts).
 ///
-/// @param part_of  of each own vertex
-/// @param weights  of each own vertex; empty: all 1
+/// @param part_of  part of each vertex of this rank
+/// @param weights  weight of each vertex of this rank; empty: all 1
 /// @throws as `Communicator::exchange`
 [[nodiscard]] double imbalance_of(const Communicator& communicator, const std::vector<Index>& part_of,
                                   const std::vector<GlobalIndex>& weights, Index parts);

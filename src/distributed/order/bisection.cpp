@@ -9,8 +9,8 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Returns the graph without the edges between pieces. A piece will be cut into several parts; its number is
-/// that of the first of them.
+/// Returns the graph without the edges between pieces. A piece is a range of parts not yet separated; its
+/// number is that of the first of these parts.
 GlobalGraph within_pieces(const GlobalGraph& graph, const HaloValues<Index>& piece_of) {
   GlobalGraph within{graph.layout, {}};
   for (Offset row = 0; row < graph.rows.size(); ++row) {
@@ -22,7 +22,7 @@ GlobalGraph within_pieces(const GlobalGraph& graph, const HaloValues<Index>& pie
   return within;
 }
 
-/// Weight of each piece on the ranks before this one, and on all ranks.
+/// Weight of each piece: on the ranks before this one, and on all ranks.
 struct PieceWeights {
   std::vector<GlobalIndex> before;
   std::vector<GlobalIndex> all;
@@ -57,7 +57,7 @@ std::vector<Index> bisected(const Communicator& communicator, const GlobalGraph&
   const bool is_weighted = communicator.sum(static_cast<GlobalIndex>(weights.size())) > 0;
   const std::vector<GlobalIndex> of_vertices = is_weighted ? weights : std::vector<GlobalIndex>(own_count, 1);
   std::vector<Index> piece_of(own_count, 0);
-  // for each part: if a piece begins with it, the number of parts of that piece, else 0
+  // by part: the number of parts of the piece that begins with this part; 0 if no piece does
   std::vector<Index> parts_of(static_cast<std::size_t>(parts), 0);
   parts_of[0] = parts;
   while (*std::max_element(parts_of.begin(), parts_of.end()) > 1) {
@@ -65,7 +65,7 @@ std::vector<Index> bisected(const Communicator& communicator, const GlobalGraph&
     const GlobalGraph within = communicator.together([&] { return within_pieces(graph, pieces); });
     const std::vector<GlobalIndex> numbers =
         fiedler_order(communicator, within, halo, number_in_file, options).new_numbers;
-    // piece and weight by new number: the vertices of a piece follow its Fiedler vector
+    // for each new number, piece and weight of the vertex: in a piece, vertices follow its Fiedler vector
     std::vector<Index> halves = delivered<Index>(communicator, graph.layout, numbers, pieces.own(), Index{0});
     const std::vector<GlobalIndex> in_order =
         delivered<GlobalIndex>(communicator, graph.layout, numbers, of_vertices, GlobalIndex{0});

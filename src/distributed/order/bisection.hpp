@@ -17,12 +17,12 @@ namespace meshorder::distributed {
 /// most. Returns the same parts for the same graph on the same number of ranks. Every rank has to call it.
 /// O(log parts) Fiedler vectors.
 ///
-/// @param halo            of the graph's ghosts
+/// @param halo            halo of the graph's ghosts: neighbours that other ranks own
 /// @param number_in_file  as in `fiedler_order`
 /// @param parts           ≥ 1
-/// @param weights         > 0, of each own vertex; empty on all ranks: all 1
+/// @param weights         weight > 0 of each vertex of this rank; empty on all ranks: all 1
 /// @param options         as in `fiedler_order`
-/// @return the part of each own vertex
+/// @return the part of each vertex of this rank
 /// @throws as `fiedler_order`
 [[nodiscard]] std::vector<Index> bisected(const Communicator& communicator, const GlobalGraph& graph,
                                           const Halo& halo, const std::vector<GlobalIndex>& number_in_file,

@@ -22,7 +22,7 @@ namespace meshorder::distributed {
 [[nodiscard]] std::vector<GlobalIndex> cells_by_lexmax(const Communicator& communicator, const Layout& cells,
                                                        Rows cell_vertices, const Layout& vertices);
 
-/// Returns the places, from 0 on, of this rank's cells in the order `lexmax` of these cells alone.
+/// Returns the indices, from 0 on, of this rank's cells, sorted by `lexmax` among these cells alone.
 ///
 /// @throws TooLarge for more than 2,147,483,647 cells
 [[nodiscard]] std::vector<GlobalIndex> own_cells_by_lexmax(const Rows& cell_vertices);

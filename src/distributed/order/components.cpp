@@ -13,7 +13,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Returns the subgraph of a rank's own vertices.
+/// Returns the subgraph of the vertices that a rank owns.
 CsrGraph own_graph(const GlobalGraph& graph, int rank) {
   const GlobalIndex first = graph.layout.begin(rank);
   const GlobalIndex count = graph.layout.size(rank);
@@ -85,7 +85,7 @@ struct Found {
 Found joined_pieces(const std::vector<GlobalIndex>& sizes, const std::vector<Link>& links,
                     const Layout& pieces, GlobalIndex alone) {
   const std::vector<GlobalIndex> first_piece = smallest_pieces(sizes.size(), links);
-  std::vector<GlobalIndex> size_of(sizes.size(), 0);  // by first piece: the size of its component
+  std::vector<GlobalIndex> size_of(sizes.size(), 0);  // size of a component, by its first piece
   std::vector<char> is_shared(sizes.size(), 0);
   for (std::size_t piece = 0; piece < sizes.size(); ++piece) {
     const auto first = static_cast<std::size_t>(first_piece[piece]);

@@ -22,7 +22,7 @@ constexpr int kAllRanks = -1;
 
 /// The components of a graph that have vertices on this rank, and those that all ranks solve.
 struct Components {
-  ComponentNumbering pieces;            ///< components of the subgraph of the own vertices
+  ComponentNumbering pieces;            ///< components of the subgraph of this rank's vertices, called pieces
   std::vector<Component> of_piece;      ///< the component of each piece
   std::vector<Component> of_all_ranks;  ///< components that all ranks solve; the same on all ranks
 };
@@ -31,7 +31,7 @@ struct Components {
 /// all ranks, any other by the rank of its smallest vertex. Every rank has to call it. O(entries), and
 /// O(pieces of all ranks) at the root.
 ///
-/// @param halo   of the graph's ghosts
+/// @param halo   halo of the graph's ghosts: neighbours that other ranks own
 /// @throws as `Communicator::exchange`
 [[nodiscard]] Components components_of(const Communicator& communicator, const GlobalGraph& graph,
                                        const Halo& halo, GlobalIndex alone);

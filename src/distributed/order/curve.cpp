@@ -53,7 +53,7 @@ Curve along_hilbert_curve(const Communicator& communicator, const Layout& vertic
   });
   entries = sample_sorted(communicator, std::move(entries));
 
-  // the numbers are the places in the sorted sequence
+  // a vertex's number is its position in the sorted sequence
   const GlobalIndex first = before_this_rank(communicator, entries.size());
   std::vector<GlobalIndex> in_file;
   std::vector<GlobalIndex> numbers;

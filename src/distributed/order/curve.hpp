@@ -13,17 +13,17 @@ namespace meshorder::distributed {
 /// sorted by their numbers in the file; unused vertices come last, in the order of the file. The numbers are
 /// the same on any number of ranks.
 struct Curve {
-  Layout layout;                            ///< of the numbers of used vertices: equal shares
+  Layout layout;                            ///< the owners of the numbers of used vertices, in equal shares
   std::vector<GlobalIndex> number_of;       ///< number along the curve of each vertex of the slice
-  std::vector<GlobalIndex> number_in_file;  ///< of each own number along the curve
-  std::vector<Point> points;                ///< of each own number along the curve
+  std::vector<GlobalIndex> number_in_file;  ///< number in the file of each curve number that this rank owns
+  std::vector<Point> points;                ///< point of each curve number that this rank owns
 };
 
 /// Numbers the vertices of a mesh. Every rank has to call it. O(n log n) for n vertices of a rank.
 ///
 /// @param vertices  the owners of the vertices
-/// @param points    of the own vertices
-/// @param used      for each own vertex, whether an element uses it
+/// @param points    coordinates of this rank's vertices
+/// @param used      whether an element uses each vertex of this rank
 /// @throws as `Communicator::exchange`
 [[nodiscard]] Curve along_hilbert_curve(const Communicator& communicator, const Layout& vertices,
                                         const std::vector<Point>& points, const std::vector<char>& used);

@@ -23,11 +23,11 @@
 namespace meshorder::distributed {
 namespace {
 
-// A vertex as it is sent to the rank that solves its component: a row of these entries, followed by its
+// A vertex as it is sent to the rank that solves its component is a row of these entries, then its
 // neighbours.
 enum VertexEntry : std::size_t { kNumber, kInFile, kPlace, kStart, kFirstNeighbour };
 
-/// The new numbers that this rank has found, of vertices that any ranks own, and reports on components.
+/// New numbers that this rank has found, for vertices of any rank, and reports on their components.
 struct Places {
   struct Report {
     GlobalIndex place;
@@ -126,7 +126,7 @@ void order_alone(const Rows& rows, const FiedlerOptions& options, Places& places
   }
 }
 
-/// Returns the own vertices of a component that all ranks solve, in the sequence of its Laplacian's rows.
+/// Returns this rank's vertices of a component that all ranks solve, in the sequence of its Laplacian's rows.
 std::vector<Index> own_members(const Components& components, const Component& component) {
   std::vector<Index> members;
   for (Index piece = 0; piece < components.pieces.component_count(); ++piece) {
@@ -173,7 +173,7 @@ SharedLevel finest_level(const Communicator& communicator, const GlobalGraph& gr
   return level;
 }
 
-/// Returns the entries of the own rows in the Fiedler vector of a connected graph.
+/// Returns this rank's entries of the Fiedler vector of a connected graph.
 std::vector<double> solve(const Communicator& communicator, SharedLevel finest, const FiedlerOptions& options,
                           GlobalIndex few, FiedlerComponent& report) {
   report.size = static_cast<Index>(finest.layout.size());
@@ -186,7 +186,7 @@ std::vector<double> solve(const Communicator& communicator, SharedLevel finest, 
     companion = column(start, 1);
   }
   SharedProblem problem(hierarchy, 0);
-  // different random numbers on every rank
+  // use different random numbers on every rank
   const std::uint64_t seed =
       options.seed + static_cast<std::uint64_t>(communicator.rank()) * 0x9e3779b97f4a7c15U;
   const LobpcgResult solved = lowest_eigenvector(

@@ -13,14 +13,14 @@ namespace meshorder::distributed {
 
 /// Problem sizes up to which one rank works alone.
 struct SharedSizes {
-  GlobalIndex alone = 50'000;  ///< most vertices of a component on several ranks that one rank solves
-  GlobalIndex few = 50'000;    ///< most coarse vertices that go to the root; n / ranks if that is larger
+  GlobalIndex alone = 50'000;  ///< maximum size of a component on several ranks that one rank solves
+  GlobalIndex few = 50'000;    ///< maximum number of coarse vertices at the root; n / ranks if larger
 };
 
 /// The order by the Fiedler vector of a distributed graph.
 struct SharedFiedlerOrder {
-  std::vector<GlobalIndex> new_numbers;      ///< of the vertices in the graph's rows
-  std::vector<FiedlerComponent> components;  ///< of all ranks, largest first; at the root
+  std::vector<GlobalIndex> new_numbers;      ///< new number of the vertex of each row of the graph
+  std::vector<FiedlerComponent> components;  ///< reports on all components, largest first; at the root only
 };
 
 /// Orders a graph as the serial `fiedler` does. Components follow each other, largest first, ties by their
@@ -31,9 +31,9 @@ struct SharedFiedlerOrder {
 /// other component. The order depends only on the graph and the number of ranks, not on the number of
 /// threads.
 ///
-/// @param halo            of the graph's ghosts
-/// @param number_in_file  of each own vertex. The numbers fix the sign as in the serial order: among the
-///                        entries with at least half of the largest magnitude, the first in the file is
+/// @param halo            halo of the graph's ghosts: neighbours that other ranks own
+/// @param number_in_file  number of each vertex of this rank. Fixes the sign as in the serial order: among
+///                        the entries with at least half of the largest magnitude, the first in the file is
 ///                        negative
 /// @param options         tolerance, max_iterations and seed
 /// @throws SharedError if the tolerance or the number of iterations is not positive; as

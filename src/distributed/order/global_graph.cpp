@@ -15,7 +15,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Returns a dispatch of each element to each rank that owns one of its vertices.
+/// Returns the dispatches that send each element to every rank that owns one of its vertices.
 std::vector<Dispatch> to_owners(const Layout& layout, const Rows& elements) {
   std::vector<Dispatch> dispatches;
   std::vector<int> owners;
@@ -29,7 +29,7 @@ std::vector<Dispatch> to_owners(const Layout& layout, const Rows& elements) {
   return dispatches;
 }
 
-/// Returns the elements with each vertex replaced by its place in `numbers`.
+/// Returns the elements with each vertex replaced by its position in `numbers`.
 Incidence renumbered(const Rows& elements, const NumberSet& numbers) {
   Incidence result;
   result.vertex_count = index_size(numbers.numbers());
@@ -68,7 +68,7 @@ GlobalGraph global_graph(const Communicator& communicator, const Layout& layout,
   std::vector<Dispatch> dispatches = communicator.together([&] { return to_owners(layout, elements); });
   Rows received = send_rows(communicator, std::move(elements), std::move(dispatches));
   return communicator.together([&] {
-    // local numbers that ascend with the global ones, so that rows of the local graph ascend in both
+    // local numbers ascend with the global ones, so that rows which ascend in one ascend in the other
     const NumberSet set(received.entries);
     const std::vector<GlobalIndex>& numbers = set.numbers();
     if (numbers.size() > static_cast<std::size_t>(kMaxIndex)) {

@@ -10,26 +10,26 @@
 
 namespace meshorder::distributed {
 
-/// A rank's own rows of an undirected graph. A row has the ascending global numbers of the neighbours,
-/// without loops and repeats. Every edge is in the rows of both its ends. PT-Scotch takes these arrays as
-/// they are.
+/// This rank's rows of an undirected graph. A row has the ascending global numbers of the neighbours, without
+/// loops and repeats. Every edge is in the rows of both its ends. PT-Scotch takes the arrays of `rows`
+/// without conversion.
 struct GlobalGraph {
-  Layout layout;  ///< of the vertices
-  Rows rows;      ///< the neighbours of the own vertices
+  Layout layout;  ///< the owners of the vertices
+  Rows rows;      ///< the neighbours of each vertex of this rank
 };
 
 /// Builds the graph that joins any two vertices of a common element. Elements may be on any rank. Every rank
 /// has to call it. O(sum of element sizes squared · log degree).
 ///
-/// @param layout    of the vertices
-/// @param elements  vertices of the elements on this rank; each element is on one rank. Freed early, because
-///                  they take as much memory as the graph
+/// @param layout    the owners of the vertices
+/// @param elements  vertices of each element on this rank; freed before the graph is built, because they take
+///                  as much memory as the graph
 /// @throws SharedError if the elements at a rank's own vertices have more than
 ///         2,147,483,647 different vertices,
 ///         or if a rank lacks memory
 [[nodiscard]] GlobalGraph global_graph(const Communicator& communicator, const Layout& layout, Rows elements);
 
-/// Returns the neighbours of own vertices that other ranks own, ascending, each once.
+/// Returns the ghosts: neighbours of this rank's vertices that other ranks own; ascending, each once.
 [[nodiscard]] std::vector<GlobalIndex> ghosts(const GlobalGraph& graph, int rank);
 
 /// As `EdgeSpan`, for 64-bit numbers.
@@ -41,7 +41,7 @@ struct GlobalEdgeSpan {
 
 /// Returns the spans of a graph's edges in an order. Every rank has to call it. O(entries).
 ///
-/// @param place_of  place of each vertex in the order
+/// @param place_of  position of each vertex in the order
 /// @throws as `Communicator::exchange`
 [[nodiscard]] GlobalEdgeSpan edge_span(const Communicator& communicator, const GlobalGraph& graph,
                                        const HaloValues<GlobalIndex>& place_of);

@@ -93,8 +93,7 @@ LocalPart part_of_rows(const Rows& rows, std::span<const Offset> members) {
   return part;
 }
 
-/// Returns whether an order should be reversed: whether the vertices that edges pull to the front are at its
-/// end.
+/// Returns whether reversing an order brings vertices nearer to where their edges to other parts pull them.
 bool is_the_wrong_way_round(std::span<const Index> places, const std::vector<float>& pull) {
   const double middle = 0.5 * (static_cast<double>(places.size()) - 1);
   double along = 0;

@@ -15,7 +15,7 @@ namespace meshorder::distributed {
 
 /// New numbers of vertices, contiguous by part, and figures on the parts.
 struct PartOrders {
-  std::vector<GlobalIndex> new_numbers;  ///< of the vertices in the graph's rows
+  std::vector<GlobalIndex> new_numbers;  ///< new number of the vertex of each row of the graph
   std::vector<GlobalIndex> starts;       ///< first new number of each part, then the end of the last part
   std::vector<GlobalIndex> interfaces;   ///< for each part, the number of vertices with outside neighbours
   GlobalIndex ghosts = 0;                ///< number of outside neighbours, summed over the parts
@@ -27,7 +27,7 @@ struct PartOrders {
 /// O(entries) + method.
 ///
 /// @param graph     numbered along `curve`; a part's vertices go to the method in that order
-/// @param place_of  of each vertex, the place of its part in the order of the parts
+/// @param place_of  for each vertex, the position of its part in the order of the parts
 /// @param method    name of a vertex method
 /// @param interface_place place of the vertices with neighbours in other parts
 /// @throws as `Communicator::exchange`; SharedError with what the method throws
@@ -45,8 +45,8 @@ struct RangesOfOrder {
 
 /// Cuts an order into ranges whose sizes differ by at most one. Every rank has to call it. O(entries).
 ///
-/// @param halo         of the graph's ghosts
-/// @param new_numbers  of the vertices in the graph's rows
+/// @param halo         halo of the graph's ghosts: neighbours that other ranks own
+/// @param new_numbers  new number of the vertex of each row of the graph
 /// @param parts        ≥ 1
 /// @throws as `Communicator::exchange`
 [[nodiscard]] RangesOfOrder ranges_of(const Communicator& communicator, const GlobalGraph& graph,

@@ -15,15 +15,15 @@ namespace meshorder::distributed {
 struct MeshSlice {
   Layout vertices;
   Layout cells;
-  std::vector<Point> points;  ///< of the own vertices
-  Rows cell_vertices;         ///< global numbers of the vertices of the own cells
-  std::vector<Shape> shapes;  ///< of the own cells
+  std::vector<Point> points;  ///< coordinates of this rank's vertices
+  Rows cell_vertices;         ///< global numbers of the vertices of this rank's cells
+  std::vector<Shape> shapes;  ///< shapes of this rank's cells
 };
 
 /// Distributes the points and cells of a mesh at the root. Every rank has to call it. O(size of the mesh) at
 /// the root.
 ///
-/// @param mesh  ignored on other ranks
+/// @param mesh  the mesh at the root; ignored on other ranks
 /// @throws as `Communicator::exchange`
 [[nodiscard]] MeshSlice scattered(const Communicator& communicator, const Mesh& mesh);
 

@@ -12,7 +12,7 @@ namespace meshorder::distributed {
 
 /// Vertices or cells sorted by the numbers (ids) that their file gives them.
 struct NumberOrder {
-  std::vector<GlobalIndex> sorted;    ///< places in the file, sorted by number: this rank's range of the list
+  std::vector<GlobalIndex> sorted;    ///< this rank's range of the positions in the file, sorted by number
   std::optional<std::int64_t> twice;  ///< the smallest number that occurs twice
 };
 
@@ -20,7 +20,7 @@ struct NumberOrder {
 /// rank.
 ///
 /// @param layout   the owners of the vertices or cells
-/// @param numbers  of the own ones
+/// @param numbers  numbers of this rank's vertices or cells, in the order of the file
 /// @throws as `Communicator::exchange`
 [[nodiscard]] NumberOrder order_of_numbers(const Communicator& communicator, const Layout& layout,
                                            const std::vector<std::int64_t>& numbers);

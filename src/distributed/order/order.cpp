@@ -41,7 +41,7 @@ class Stages {
   Stopwatch stopwatch_;
 };
 
-/// Returns the elements of a slice, or the pieces into which their shapes are divided to join vertices.
+/// Returns the elements of a slice, or the pieces of their shapes; the vertices of each become neighbours.
 Rows elements_of(const Communicator& communicator, const MeshSlice& slice) {
   const std::vector<char> is_element = are_elements(communicator, slice.shapes);
   return communicator.together([&] {
@@ -115,7 +115,7 @@ PartOrders in_parts(const Communicator& communicator, const GlobalGraph& graph, 
                           report.parts, options.vertices, options.interface_place, options.order);
 }
 
-/// Orders all vertices by the Fiedler vector, and cuts that order.
+/// Orders all vertices by the Fiedler vector, and divides that order into parts.
 PartOrders in_one_order(const Communicator& communicator, const GlobalGraph& graph, const Halo& halo,
                         const std::vector<GlobalIndex>& number_in_file, const DistributedOptions& options,
                         DistributedReport& report) {

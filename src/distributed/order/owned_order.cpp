@@ -16,7 +16,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Returns the cells with their vertices renumbered; `new_numbers` has the new numbers of this rank's own
+/// Returns the cells with their vertices renumbered; `new_numbers` has the new numbers of this rank's
 /// vertices.
 Rows renumbered(const Communicator& communicator, const Layout& vertices, const Rows& cells,
                 const std::vector<GlobalIndex>& new_numbers) {

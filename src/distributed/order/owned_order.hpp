@@ -14,14 +14,14 @@ namespace meshorder::distributed {
 /// A mesh as the ranks of a running solver have distributed it.
 struct OwnedMesh {
   Layout vertices;            ///< the owners of the vertices
-  std::vector<Point> points;  ///< of the own vertices; or empty on all ranks
+  std::vector<Point> points;  ///< coordinates of this rank's vertices; or empty on all ranks
   Rows cells;                 ///< numbers of the vertices of this rank's elements
 };
 
 /// The order of a rank's own vertices and elements.
 struct OwnedOrder {
-  std::vector<GlobalIndex> new_numbers;  ///< of each own vertex, within the rank's range
-  std::vector<GlobalIndex> cells;        ///< places of this rank's elements in their new order
+  std::vector<GlobalIndex> new_numbers;  ///< new number of each vertex of this rank, within the rank's range
+  std::vector<GlobalIndex> cells;        ///< indices of this rank's elements, sorted in their new order
 };
 
 /// Orders the vertices of every rank among themselves, and the elements of each rank by `lexmax`. Every rank
@@ -36,14 +36,14 @@ struct OwnedOrder {
 
 /// Parts of a mesh, and new numbers of its vertices, contiguous by part.
 struct OwnedParts {
-  std::vector<GlobalIndex> new_numbers;  ///< of each own vertex
+  std::vector<GlobalIndex> new_numbers;  ///< new number of each vertex of this rank
   std::vector<GlobalIndex> starts;       ///< first new number of each part, then the end of the last part
-  std::vector<GlobalIndex> cells;        ///< part of each element: that of its vertex with the largest number
+  std::vector<GlobalIndex> cells;        ///< part of each element: that of its vertex of largest new number
 };
 
 /// Orders the vertices as `order_slices` does. Every rank has to call it.
 ///
-/// @param mesh  with coordinates; each element on one rank
+/// @param mesh  must have coordinates, and each element on one rank only
 /// @throws SharedError without coordinates, and as `order_slices`
 [[nodiscard]] OwnedParts order_parts_of_owned(const Communicator& communicator, OwnedMesh mesh,
                                               const DistributedOptions& options);

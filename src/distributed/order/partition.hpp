@@ -59,7 +59,7 @@ namespace meshorder::distributed {
 
 /// Parts of a graph.
 struct Partition {
-  std::vector<Index> part_of;  ///< of each own vertex, 0 … parts − 1
+  std::vector<Index> part_of;  ///< part of each vertex of this rank, 0 … parts − 1
   Partitioner by;              ///< the partitioner that made the parts
   std::string reason;          ///< why the requested partitioner was not used; empty if it was
 };
@@ -71,7 +71,7 @@ struct Partition {
 /// @param graph    numbered along a Hilbert curve from 0 on, equal shares on all ranks
 /// @param parts    ≥ 1
 /// @param by       `ptscotch` or `hilbert`
-/// @param weights  > 0, of each own vertex; empty: all 1
+/// @param weights  weight > 0 of each vertex of this rank; empty: all 1
 /// @throws as `Communicator::exchange`
 [[nodiscard]] Partition partitioned(const Communicator& communicator, const GlobalGraph& graph, Index parts,
                                     Partitioner by, const std::vector<GlobalIndex>& weights = {});
@@ -85,7 +85,7 @@ enum class ScotchStrategy : std::uint8_t { speed, quality };
 /// @param parts     ≥ 2
 /// @param weights   as in `partitioned`
 /// @param strategy  `quality` takes up to twice as long as `speed`
-/// @param part_of   receives the part of each own vertex
+/// @param part_of   receives the part of each vertex of this rank
 /// @return whether PT-Scotch succeeded; the same on all ranks
 /// @throws SharedError if a rank lacks memory, and if this program was linked with a PT-Scotch whose numbers
 ///         do not have 64 bits

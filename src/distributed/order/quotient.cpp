@@ -11,7 +11,7 @@
 namespace meshorder::distributed {
 namespace {
 
-constexpr double kTolerance = 1e-6;  // of the Fiedler vector, which is cheap for a graph this small
+constexpr double kTolerance = 1e-6;  // tolerance of the Fiedler vector, cheap for a graph this small
 constexpr int kPasses = 20;          // most passes over all parts; usually no part moves after a few
 
 /// The number of edges between two parts, a < b.
@@ -38,7 +38,7 @@ std::vector<Border> merged(std::vector<Border> borders) {
   return result;
 }
 
-/// Returns the borders on this rank. An edge is counted once, at its vertex in the part of smaller number.
+/// Returns the borders on this rank. An edge is counted once, by the rank of its vertex in the lower part.
 std::vector<Border> borders_of(const GlobalGraph& graph, const HaloValues<Index>& part_of) {
   constexpr std::size_t kEnough = 1 << 20;  // borders are merged when there are this many
   std::vector<Border> borders;

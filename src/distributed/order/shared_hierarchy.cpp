@@ -15,7 +15,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Makes one Gauss–Seidel sweep over the own rows; the values of other ranks stay fixed.
+/// Makes one Gauss–Seidel sweep over this rank's rows; the values of other ranks stay fixed.
 template <int M, class RightSide>
 void sweep_forwards(const SharedLevel& level, RightSide b, VectorBlock<M>& x) {
   const Index rows = level.laplacian.size();
@@ -46,7 +46,7 @@ SharedHierarchy::SharedHierarchy(const Communicator& communicator, SharedLevel f
   }
 }
 
-/// Makes the next coarser level; returns whether it stays shared.
+/// Makes the next coarser level; returns whether it stays distributed.
 bool SharedHierarchy::coarsen(GlobalIndex few) {
   SharedLevel& fine = levels_.back();
   const RowChunks all_rows = RowChunks::whole(fine.laplacian.size());
@@ -123,7 +123,7 @@ void SharedHierarchy::gather(const SharedLevel& coarse) {
   });
 }
 
-/// Returns the correction of the level that the root has gathered, for the own rows.
+/// Returns, for this rank's rows, the correction of the level that the root has gathered.
 template <int M>
 VectorBlock<M> SharedHierarchy::corrected_at_root(const VectorBlock<M>& own) {
   VectorBlock<M> b = communicator_.gathered_at_root(own);
@@ -136,7 +136,7 @@ VectorBlock<M> SharedHierarchy::corrected_at_root(const VectorBlock<M>& own) {
   return communicator_.scattered_from_root(x, gathered_.starts());
 }
 
-/// Returns the correction of a level other than the finest one, by two cycles, for the own rows.
+/// Returns, for this rank's rows, the correction of a level other than the finest one, by two cycles.
 template <int M>
 VectorBlock<M> SharedHierarchy::coarse_correction(std::size_t level, VectorBlock<M> b) {
   if (level == levels_.size()) return corrected_at_root<M>(b);

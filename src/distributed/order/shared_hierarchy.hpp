@@ -18,25 +18,25 @@ namespace meshorder::distributed {
 
 /// A rank's rows of the Laplacian of a graph, and their aggregation to the next coarser level.
 struct SharedLevel {
-  Layout layout;                    ///< of the rows' numbers
-  Halo halo;                        ///< of the neighbours on other ranks
-  Laplacian laplacian;              ///< own rows; columns: the own rows, then the halo's numbers
-  std::vector<double> masses = {};  ///< of the own rows, as in `Level`
-  Aggregation aggregation = {};     ///< of the own rows
+  Layout layout;                    ///< the owners of the rows
+  Halo halo;                        ///< halo of the neighbours on other ranks
+  Laplacian laplacian;              ///< rows of this rank; columns: these rows, then the halo's numbers
+  std::vector<double> masses = {};  ///< masses of this rank's rows, as in `Level`
+  Aggregation aggregation = {};     ///< aggregates of this rank's rows
 
   [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(laplacian.size()); }
 };
 
-/// A `Hierarchy` of one connected, distributed graph. Each rank aggregates its own rows until all ranks
-/// together have few coarse vertices. Those go to the root, which builds the coarser levels alone. Every rank
-/// has to call all functions.
+/// A `Hierarchy` of one connected, distributed graph. Each rank aggregates its own rows until few coarse
+/// vertices are left on all ranks together. The root then gets these and builds the coarser levels alone.
+/// Every rank has to call all functions.
 ///
 /// The cycle is the serial one, except that Gauss–Seidel uses the values that other ranks had before the
 /// sweep. This still lowers the energy of the error, since 2 D − L is positive semi-definite for any graph.
 class SharedHierarchy {
  public:
-  /// @param few  coarse vertices go to the root when all ranks together have at most this many. More of them
-  ///             go there only if a step of coarsening leaves most vertices
+  /// @param few  coarse vertices go to the root when all ranks together have at most this many, or when a
+  ///             coarsening step leaves most vertices
   /// @throws SharedError if a rank lacks memory
   SharedHierarchy(const Communicator& communicator, SharedLevel finest, GlobalIndex few);
 
@@ -60,11 +60,11 @@ class SharedHierarchy {
 
   const Communicator& communicator_;
   std::vector<SharedLevel> levels_;
-  Layout gathered_;                  ///< of the vertices of the finest level that only the root has
+  Layout gathered_;                  ///< the owners of the vertices of the finest level in `bottom_`
   std::optional<Hierarchy> bottom_;  ///< the levels that only the root has
 };
 
-/// Truncates x to the own rows and appends the values of the level's halo. Every rank has to call it.
+/// Truncates x to this rank's rows and appends the values of the level's halo. Every rank has to call it.
 template <class Row>
 void fetch_others(const SharedLevel& level, std::vector<Row>& x) {
   x.resize(level.rows());

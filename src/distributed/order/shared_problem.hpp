@@ -12,7 +12,7 @@
 
 namespace meshorder::distributed {
 
-/// The eigenproblem on a level of a distributed hierarchy. Sums are added up in rank order.
+/// The eigenproblem on a level of a distributed hierarchy. Sums over the ranks are added up in rank order.
 class SharedProblem : public EigenProblem {
  public:
   /// @param hierarchy  must outlive this object
@@ -65,7 +65,7 @@ class SharedProblem : public EigenProblem {
 
   SharedHierarchy& hierarchy_;
   std::size_t level_;
-  mutable VectorBlock<1> one_;  ///< work space: a vector followed by the halo's entries
+  mutable VectorBlock<1> one_;  ///< work space: a vector of this rank's rows followed by the halo's entries
   mutable VectorBlock<2> two_;
 };
 
