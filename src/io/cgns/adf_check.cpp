@@ -160,7 +160,7 @@ class AdfCheck {
   std::string name_;
   const InputFile& file_;
   bool binary_ = false;
-  std::endian order_ = std::endian::little;  // of binary numbers
+  std::endian order_ = std::endian::little;  // byte order of binary numbers
   std::set<std::uint64_t> seen_;             // offsets of nodes
 };
 

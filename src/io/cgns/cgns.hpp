@@ -39,7 +39,7 @@ inline constexpr int kPolyhedra = 23;
 
 /// A type of elements.
 struct ElementType {
-  int number;  ///< in ElementType_t
+  int number;  ///< value of ElementType_t
   std::string_view name;
   Shape shape;
   int nodes;
@@ -49,8 +49,8 @@ struct ElementType {
 const ElementType* element_type(std::int64_t number);
 /// Returns the type of cells of this shape, null if there is none.
 const ElementType* element_type_of(Shape shape, int nodes);
-/// Returns the place in the file of each vertex of a cell, which is also the place in the cell of each vertex
-/// of the file; empty if the file has the order of a Mesh.
+/// Returns, for each vertex of a cell, its position in the file's element; empty if both orders agree. The
+/// permutation is its own inverse.
 std::span<const int> file_order(Shape shape, int nodes);
 
 // ---- contents of a file besides the mesh
@@ -72,17 +72,17 @@ struct Section {
   std::string range_type = "I4";
   std::string number_type = "I4";
   std::string offset_type = {};  ///< type of ElementStartOffset, empty if the section has none
-  Index first_item = 0;          ///< of polygons or polyhedra: place of the first one in `Polyhedra`
+  Index first_item = 0;          ///< index in `Polyhedra` of the first polygon or polyhedron
 
   [[nodiscard]] bool is_of_polyhedra() const { return type == kPolygons || type == kPolyhedra; }
 };
 
 /// The polygons and polyhedra of all zones, section by section. Stays the same when the mesh is reordered.
 struct Polyhedra {
-  std::vector<Offset> corner_starts{0};  ///< where each polygon begins in `corners`; then the size of that
-  std::vector<Index> corners;            ///< of polygons: vertices by their places in the file
-  std::vector<Offset> face_starts{0};    ///< where each polyhedron begins in `faces`; then the size of that
-  /// Faces of polyhedra: ±(1 + place of the polygon), negative if its normal points into the polyhedron.
+  std::vector<Offset> corner_starts{0};  ///< start of each polygon in `corners`, then the size of `corners`
+  std::vector<Index> corners;            ///< vertices of the polygons, by their positions in the file
+  std::vector<Offset> face_starts{0};    ///< start of each polyhedron in `faces`, then the size of `faces`
+  /// Faces of polyhedra: ±(1 + index of the polygon), negative if its normal points into the polyhedron.
   std::vector<Index> faces;
 
   [[nodiscard]] Index polygon_count() const { return static_cast<Index>(corner_starts.size() - 1); }
@@ -142,17 +142,17 @@ struct Field {
   };
   Role role = Role::values;
   int place = 0;           ///< index of the zone, the section, the list or the parents
-  int axis = 0;            ///< of a coordinate
+  int axis = 0;            ///< axis of a coordinate
   std::string type = {};   ///< type of values and coordinates in the file
   std::string array = {};  ///< name of the mesh's array
-  bool has_left = false;   ///< of values: the array is gone, or no longer fits its fields
-  Index component = 0;     ///< of the array
+  bool has_left = false;   ///< for values: the array is gone, or no longer fits its fields
+  Index component = 0;     ///< component of the array
   Association association = Association::vertices;
   int section = -1;  ///< section whose cells have the values, in their order; −1: `list` decides
   int list = -1;     ///< list whose members have the values, in their order; −1: the whole zone
 };
 
-/// The nodes of a file, without the values that the mesh holds, and the fields that these values belong to.
+/// The nodes of a file, without the values that the mesh holds, and the fields that describe these values.
 struct CgnsMetadata final : FormatMetadata {
   std::shared_ptr<const Tree> tree;
   int cell_dimension = 3;
@@ -167,10 +167,10 @@ struct CgnsMetadata final : FormatMetadata {
   std::shared_ptr<const Polyhedra> polyhedra;  ///< null if there are none
   std::vector<Index> cell_of_polygon;          ///< −1: the polygon is not a cell
   std::vector<Index> cell_of_polyhedron;       ///< −1: the polyhedron was left out
-  std::vector<Index> vertex_places;            ///< position of each vertex of the file; empty: unchanged
+  std::vector<Index> vertex_places;            ///< mesh index of each vertex of the file; empty: the same
   std::vector<std::string> lost;               ///< see `contents`
 
-  /// Returns the present position of the vertex at `place` in the file.
+  /// Returns the index in the mesh of the vertex at `place` in the file.
   [[nodiscard]] Index vertex_at(Index place) const {
     return vertex_places.empty() ? place : vertex_places[static_cast<std::size_t>(place)];
   }

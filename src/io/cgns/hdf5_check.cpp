@@ -42,7 +42,7 @@ class Hdf5Check {
     throw InputError(name_, what, remedy);
   }
 
-  /// Returns the text of an attribute, for which libcgns has room for `most` bytes.
+  /// Returns the text of an attribute; fails if it exceeds the `most` bytes that libcgns has room for.
   [[nodiscard]] std::string text_of(hid_t group, const std::string& path, const char* name,
                                     std::size_t most) const {
     const std::string what = fmt::format("{}: the attribute '{}'", path.empty() ? "/" : path, name);

@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::size_t kLongestName = 32;
 
-/// Makes a node whose values are a field.
+/// Makes a node whose values a field describes.
 Node field_node(CgnsMetadata& metadata, std::string name, std::string label, Field field) {
   metadata.fields.push_back(std::move(field));
   return {.name = std::move(name), .label = std::move(label), .field = index_size(metadata.fields) - 1};
@@ -113,7 +113,7 @@ class MetadataMaker {
     return node;
   }
 
-  /// Makes a section of each run of cells that have the same type and the same label or sets.
+  /// Makes a section of each run of consecutive cells with the same type and the same label or sets.
   void add_sections(Node& zone) {
     std::vector<Section>& sections = metadata_->sections;
     const CellDivision division = divide_cells(mesh_, {.sets = true});
@@ -121,7 +121,7 @@ class MetadataMaker {
     metadata_->has_labels =
         labels.any() && (division.by_labels || std::all_of(labels.values.begin(), labels.values.end(),
                                                            [](std::int64_t label) { return label == 0; }));
-    std::vector<const CellPart*> keys;  // of each section
+    std::vector<const CellPart*> keys;  // cells of each section
     metadata_->section_of_cell.reserve(mesh_.cells.shapes.size());
     for (Index c = 0; c < mesh_.cell_count(); ++c) {
       const CellPart& key = division.keys[division.key_of_cell[c]];
@@ -179,7 +179,7 @@ class MetadataMaker {
 
 /// Returns the type in which new values are written.
 std::string type_of_values(const Values& values) {
-  // in the order of Values
+  // by the alternatives of Values
   constexpr std::array kTypes{"R8", "R4", "I4", "I4", "I4", "I4", "I4", "I8", "I8", "I8"};
   return kTypes.at(values.index());
 }
@@ -242,14 +242,14 @@ class Addition {
   }
 
  private:
-  /// Returns the names of the children of `parent`: a zone, or a node in it or in one of its sections.
+  /// Returns the names of the children of `parent`: a zone, or a node in a zone or in a section.
   NodeNames& names_below(const Node& parent, int zone, int section = -1) {
     const std::string path = &parent == zones_[zone] ? fmt::format("{}", zone)
                                                      : fmt::format("{}/{}/{}", zone, section, parent.name);
     return names_.try_emplace(path, parent).first->second;
   }
 
-  /// Returns the dimension of a cell, 0 for a vertex.
+  /// Returns the dimension of a cell; 0 for a vertex.
   [[nodiscard]] int dimension_of(Association association, Index position) const {
     return association == Association::cells ? dimension(mesh_.cells.shapes[position]) : 0;
   }

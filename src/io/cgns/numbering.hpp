@@ -13,8 +13,8 @@ namespace meshorder::cgns {
 ///
 /// Polygons that are cells have the order of their cells. The others lie between two cells: if the polyhedra
 /// kept their order, these polygons keep theirs, else they are sorted by the lower, then by the higher cell.
-/// The kind of polygon at each place in a section does not change: a polygon that is a cell, or a polygon
-/// between two cells. Polygons are left out if they are not cells and have no cell on either side.
+/// Each position in a section keeps its kind of polygon: a cell, or a polygon between two cells. Polygons are
+/// left out if they are not cells and have no cell on either side.
 ///
 /// The sections keep their numbers if all of them keep their sizes, else each zone is numbered from 1 on.
 class Numbering {
@@ -24,7 +24,7 @@ class Numbering {
   Numbering(const Mesh& mesh, const CgnsMetadata& metadata);
 
   [[nodiscard]] Index vertex_count(int zone) const;
-  /// Returns the vertex at a place in its zone.
+  /// Returns the vertex at a position in its zone.
   [[nodiscard]] Index vertex_at(int zone, Index place) const;
   [[nodiscard]] Index number_of_vertex(Index v) const;
 
@@ -33,7 +33,7 @@ class Numbering {
   [[nodiscard]] const std::vector<Index>& elements_of(int section) const;
   [[nodiscard]] std::int64_t first_number(int section) const { return first_numbers_[section]; }
   [[nodiscard]] Index rank_of_cell(Index c) const { return cell_ranks_[c]; }
-  /// Returns the place of a polygon in its section, −1 if it is left out.
+  /// Returns the position of a polygon in its section, −1 if it is left out.
   [[nodiscard]] Index rank_of_polygon(Index p) const { return polygon_ranks_[p]; }
   [[nodiscard]] std::int64_t number_of_cell(Index c) const;
   [[nodiscard]] std::int64_t number_of_polygon(Index p) const;
@@ -54,14 +54,14 @@ class Numbering {
 
   const Mesh& mesh_;
   const CgnsMetadata& metadata_;
-  std::vector<std::vector<Index>> vertices_;  ///< by zone; empty if there is only one zone
-  std::vector<Index> vertex_numbers_;         ///< in their zones, from 1; empty if there is only one zone
-  std::vector<std::vector<Index>> polygons_;  ///< by section
+  std::vector<std::vector<Index>> vertices_;  ///< vertices of each zone; empty if there is only one zone
+  std::vector<Index> vertex_numbers_;         ///< from 1 in each zone; empty if there is only one zone
+  std::vector<std::vector<Index>> polygons_;  ///< polygons of each section
   std::vector<Index> polygon_ranks_;
-  std::vector<std::vector<Index>> cells_;  ///< by section
+  std::vector<std::vector<Index>> cells_;  ///< cells of each section
   std::vector<Index> cell_ranks_;
-  std::vector<Index> polyhedra_;             ///< by cell; −1: the cell is not a polyhedron
-  std::vector<std::int64_t> first_numbers_;  ///< by section
+  std::vector<Index> polyhedra_;             ///< polyhedron of each cell; −1: the cell is not a polyhedron
+  std::vector<std::int64_t> first_numbers_;  ///< first element number of each section
   std::vector<std::int64_t> centred_counts_;
   bool is_whole_ = true;
 };

@@ -22,13 +22,13 @@ struct ZonePlaces {
   std::string path;
   Index first_vertex = 0;
   Index vertices = 0;
-  int first_section = 0;  ///< in the metadata; the sections of a zone ascend by their numbers
+  int first_section = 0;  ///< index in the metadata; the sections of a zone ascend by their numbers
   int section_count = 0;
-  std::vector<Index> centred_cells = {};  ///< of the base's dimension: they have values at their centres
+  std::vector<Index> centred_cells = {};  ///< cells of the base's dimension ("CellCenter")
   std::map<std::string, int> steps = {};  ///< time step of solutions and grids, from 1, if there are several
 };
 
-/// The values of one node.
+/// The values of one node, which become an array or a part of one.
 struct Piece {
   std::string solution;
   std::string name;
@@ -111,7 +111,7 @@ using NumberRanges = std::vector<std::pair<std::int64_t, std::int64_t>>;
 std::vector<NumberRanges> listed_elements(const Reading& reading);
 
 /// Reads the polygons and polyhedra of a zone into `reading.polyhedra`. `sections`: the sections of the zone,
-/// ascending by their numbers; `listed`: elements that become cells even if they lie between two polyhedra.
+/// ascending by their numbers; `listed`: polygons that become cells even if they are between two polyhedra.
 void read_polyhedra(Reading& reading, const ZonePlaces& zone, std::vector<FoundSection>& sections,
                     const NumberRanges& listed);
 /// Appends the cells of a section of polygons or polyhedra to the mesh.
@@ -120,7 +120,7 @@ void append_cells(Reading& reading, const FoundSection& found);
 /// Reads all nodes of the zones that refer to vertices or cells: solutions, boundary conditions and others.
 void read_attachments(Reading& reading);
 
-/// Makes the arrays of the mesh from the pieces; pieces of one name become one array if they can.
+/// Makes the arrays of the mesh from the pieces. Pieces of one name become one array if they fit together.
 void add_arrays(Reading& reading);
 
 }  // namespace meshorder::cgns

@@ -67,7 +67,7 @@ constexpr std::array kTypes{
 // order in the file: nodes on the edges between the two triangles precede those on the edges of the upper
 // triangle
 constexpr std::array kWedge{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17};
-// the same for edges; then the nodes on the faces (bottom, front, right, back, left, top), then the centre
+// nodes on edges as for wedges; then the faces (bottom, front, right, back, left, top), then the centre
 constexpr std::array kHexahedron{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
                                  18, 19, 12, 13, 14, 15, 24, 22, 21, 23, 20, 25, 26};
 

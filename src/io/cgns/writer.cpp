@@ -29,7 +29,7 @@ void move_positions(std::vector<Index>& positions, std::span<const Index> places
   }
 }
 
-/// Moves the values, one for each vertex or cell, to their new places; drops values with place −1.
+/// Moves the values, one for each vertex or cell, to their new positions; drops values with position −1.
 std::vector<Index> moved_values(const std::vector<Index>& values, std::span<const Index> places) {
   std::vector<Index> result(values.size());
   Index kept = 0;
@@ -126,7 +126,7 @@ void take_sets(const Mesh& mesh, CgnsMetadata& metadata) {
   }
 }
 
-/// Returns whether an array has one number in each row, and these fields have a place for each row.
+/// Returns whether an array has one number in each row, and the fields cover the vertex or cell of each row.
 bool fits(const DataArray& array, const std::vector<const Field*>& fields, const Mesh& mesh,
           const Numbering& numbering) {
   if (array.components != 1 || are_texts(array.values)) return false;
@@ -139,7 +139,7 @@ bool fits(const DataArray& array, const std::vector<const Field*>& fields, const
                           : std::all_of(array.indices.begin(), array.indices.end(), has_value);
 }
 
-/// Releases the fields of each array that no longer fits into its fields.
+/// Marks the fields of each array that they no longer fit: `has_left` becomes true.
 void release_arrays(const Mesh& mesh, CgnsMetadata& metadata, const Numbering& numbering) {
   std::map<std::pair<Association, std::string>, std::vector<const Field*>> by_array;
   for (const Field& field : metadata.fields) {

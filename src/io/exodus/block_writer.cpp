@@ -83,7 +83,7 @@ void plan_blocks(Planning& planning, bool is_own) {
     ids.insert(plan.id);
     if (division.by_sets) plan.cells.label = plan.id;  // a division by sets has no labels to keep
   }
-  // blocks of the file without elements stay before the next block that has elements
+  // blocks of the file that have no elements stay before the next block that has elements
   std::size_t next = 0;
   for (const BlockRecord& record : planning.metadata.blocks) {
     const bool is_there = std::any_of(found.begin(), found.end(),

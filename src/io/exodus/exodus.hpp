@@ -49,7 +49,7 @@ std::optional<Shape> shape_of(std::string_view type, int nodes, int dimension);
 /// Returns the name of the element type for these cells; empty if other programs do not know such a type.
 std::string_view type_of(Shape shape, int nodes);
 
-/// Returns the place in the file of each vertex of a cell; empty if the file has the order of a Mesh.
+/// Returns, for each vertex of a cell, its position in the file's element; empty if both orders agree.
 std::span<const int> file_order(Shape shape, int nodes);
 
 inline constexpr int kMostSides = 6;
@@ -72,13 +72,13 @@ struct Series {
   NcType type = kDouble;
   std::vector<std::string> arrays = {};  ///< arrays of the mesh, one for each step; empty without values
   // for element variables an entry for each block; for others one entry
-  std::vector<bool> present = {};   ///< whether the table of variables in the file says that there are values
-  std::vector<bool> declared = {};  ///< whether the file has a variable for values, even if it has no steps
+  std::vector<bool> present = {};   ///< whether the file's table of variables marks values
+  std::vector<bool> declared = {};  ///< whether the file has a netCDF variable, even without values
 };
 
 struct BlockRecord {
   std::int64_t id = 0;
-  std::string name;     ///< in the file
+  std::string name;     ///< name in the file
   std::string in_mesh;  ///< name of the set of its cells, empty if there is none
   std::string type;
   std::int64_t label = 0;  ///< label of its cells; label, shape and nodes identify the block
@@ -111,7 +111,7 @@ struct SetFamily {
   bool has_names = false;
 };
 
-/// A variable that is kept as it is.
+/// A netCDF variable that is copied without changes.
 struct PlainVariable {
   std::string name;
   NcType type;
@@ -128,14 +128,14 @@ struct MapRecord {
   NcType type = kInt;
 };
 
-/// Names of dimensions, variables and arrays for a kind of sets.
+/// Names of dimensions, netCDF variables and arrays for a kind of sets.
 struct SetKind {
-  std::string_view word;         ///< in names of arrays and in messages
-  std::string_view count;        ///< dimension
-  std::string_view prefix;       ///< begins the names of the variables of ids, names and status
-  std::string_view members;      ///< variable
-  std::string_view size;         ///< dimension
-  std::string_view factor_size;  ///< dimension
+  std::string_view word;         ///< used in names of arrays and in messages
+  std::string_view count;        ///< name of the dimension that counts the sets
+  std::string_view prefix;       ///< the names of the variables of ids, names and status begin with it
+  std::string_view members;      ///< name of the variable of members
+  std::string_view size;         ///< name of the dimension that counts the members
+  std::string_view factor_size;  ///< name of the dimension that counts the factors
   std::string_view variable;     ///< "nset" in vals_nset_var, name_nset_var, nset_var_tab
   Association association;
 };
@@ -152,17 +152,17 @@ inline constexpr std::size_t kNodeSets = 0;
 inline constexpr std::size_t kSideSets = 1;
 inline constexpr std::size_t kElementSets = 2;
 
-/// Returns the name of a set as names of arrays contain it: "node set NAME".
+/// Returns the form of a set's name that is part of names of arrays: "node set NAME".
 std::string title(const SetKind& kind, std::string_view in_mesh);
 
 /// Data of a file beyond the mesh.
 struct ExodusMetadata final : FormatMetadata {
   Storage storage{0};
-  std::vector<Attribute> attributes;  ///< of the file
+  std::vector<Attribute> attributes;  ///< attributes of the file
   std::vector<Dimension> dimensions;  ///< dimensions whose lengths do not depend on the mesh
   std::vector<PlainVariable> plain;
   std::map<std::string, std::vector<Attribute>>
-      variable_attributes;  ///< by variable; without attributes that the format defines
+      variable_attributes;  ///< by name of the variable; without attributes that the format defines
   int coordinates = 3;      ///< number of coordinates of a point
   NcType coordinate_type = kDouble;
   bool packs_coordinates = false;  ///< all coordinates are in one variable, "coord"
@@ -215,18 +215,18 @@ Header read_header(const FilePath& path);
 
 enum class PartContent : std::uint8_t { points_and_cells, all };
 
-/// Reads ranges of the points and cells of a file, with the part of the arrays, sets and numbers of `read`
-/// that belongs to them. Lists of sets are read completely, piece by piece, but only members in the ranges
-/// are kept. O(size of the part + entries of sets).
+/// Reads ranges of the points and cells of a file, with their values in the arrays, sets and numbers that
+/// `read` returns. Lists of sets are read completely, in chunks, but only members in the ranges are kept.
+/// O(size of the part + entries of sets).
 ///
 /// @param notes  receives the notes of `read` about this part, except those on repeated members and repeated
-///               numbers. The caller, which has all parts, makes these: see `note_of_repeated` and
+///               numbers. The caller, which has all parts, makes these by `note_of_repeated` and
 ///               `note_of_number_twice`
 /// @throws InputError as `read`, for faults of the part, and for coordinates that are not finite
 MeshPart read_part(const FilePath& path, const MeshRanges& ranges, PartContent content, Notes& notes);
 
-/// Returns the places of cells block by block, cells of the highest dimension first; `blocks` receives the
-/// first cell of each block.
+/// Returns the position of each cell in a file: block by block, blocks of the highest dimension first;
+/// `blocks` receives the position of each block's first cell.
 Permutation places(const Mesh& mesh, std::vector<Index>& blocks);
 
 }  // namespace meshorder::exodus

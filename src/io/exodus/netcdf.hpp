@@ -74,7 +74,7 @@ struct Variable {
 
 /// How values are stored.
 struct Storage {
-  int kind;              ///< of the file, as nc_inq_format returns it
+  int kind;              ///< kind of the file, as nc_inq_format returns it
   int deflate = 0;       ///< level of compression, 0 to 9
   bool shuffle = false;  ///< bytes are sorted before compression
 };

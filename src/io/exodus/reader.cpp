@@ -244,7 +244,7 @@ void read_cells(Reading& reading) {
 /// Values of elements of some blocks, one block after another.
 struct ValuesOfBlocks {
   std::vector<double> values;
-  std::vector<std::size_t> blocks;  ///< that have elements
+  std::vector<std::size_t> blocks;  ///< blocks of the values; all of them have elements
 };
 
 /// Reads the attributes of a block and appends them to `columns`, by name of the array.
@@ -409,7 +409,7 @@ void read_nodal_attributes(Reading& reading) {
   }
 }
 
-/// Returns the whole numbers of a variable with one for each node or element of the whole mesh.
+/// Returns the part to read of a variable of integers with one for each node or element of the whole mesh.
 std::vector<std::int64_t> numbers_of(const Reading& reading, const Variable& variable, Association of) {
   reading.require_shape(variable, {static_cast<std::size_t>(reading.count(of))});
   const auto [first, count] = reading.rows(of);
@@ -491,7 +491,7 @@ bool is_of_nodes_or_elements(const Reading& reading, const Dimension& dimension)
   if (std::any_of(kNumbered.begin(), kNumbered.end(), is_numbered)) return true;
   if (dimension.unlimited || is_one_of(name, kFixed)) return false;
   if (name.ends_with("_var") || name.ends_with("_sets") || name == "num_el_blk") return false;
-  // it may count nodes or elements under another name
+  // the dimension may count nodes or elements under another name
   return dimension.length == static_cast<std::size_t>(reading.nodes) ||
          dimension.length == static_cast<std::size_t>(reading.elements);
 }

@@ -34,8 +34,8 @@ struct Reading {
 
   /// Adds an array, under a name that no other array has, and returns that name.
   std::string add_array(DataArray array, MeshPart::ArrayRows rows = {});
-  /// Adds an array on the elements of some blocks that have elements; `values` are those of one block after
-  /// another. Returns its name.
+  /// Adds an array on the elements of some blocks that have elements; `values` lists the elements block by
+  /// block. Returns the array's name.
   std::string add_array(std::string name, Values values, const std::vector<std::size_t>& blocks);
   /// Adds a set, under a name that no other set has, and returns that name.
   std::string add_set(EntitySet set, MeshPart::SetRows rows = {});
@@ -80,8 +80,8 @@ struct Reading {
   std::shared_ptr<ExodusMetadata> metadata;
   Notes& notes;
   std::set<std::string> taken;
-  Index nodes = 0;                   ///< of the whole mesh
-  Index elements = 0;                ///< of the whole mesh
+  Index nodes = 0;                   ///< number of nodes of the whole mesh
+  Index elements = 0;                ///< number of elements of the whole mesh
   std::vector<Index> block_ends{0};  ///< block b has the cells block_ends[b] to block_ends[b + 1] − 1
 
  private:

@@ -19,7 +19,7 @@ namespace {
 /// Vertices or cells whose values are in one netCDF variable.
 struct Target {
   NcSink sink;
-  std::vector<std::size_t> starts;  ///< of their values in the variable, at the first step
+  std::vector<std::size_t> starts;  ///< start of the values in the variable at the first step
   Index first;
   Index count;
 };
@@ -166,8 +166,8 @@ struct Presence {
   bool declared = false;
 };
 
-/// Returns how a variable appears in each block. A block that never had values appears as it does in the
-/// file.
+/// Returns how a variable appears in each block. A block that never had values keeps its entries from the
+/// file that the mesh came from.
 std::vector<Presence> presence(Writing& writing, const SeriesPlan& series) {
   std::vector<Presence> result(writing.blocks.size());
   for (std::size_t b = 0; b < result.size(); ++b) {

@@ -19,10 +19,10 @@ namespace {
 
 /// The entries of a set's list whose members are in the range that is read.
 struct Entries {
-  std::vector<Index> places;   ///< in the list, ascending
+  std::vector<Index> places;   ///< positions in the list, ascending
   std::vector<Index> members;  ///< positions in the range
-  std::vector<int> sides;      ///< from 1; 1 in sets of nodes and elements
-  // of side sets, for a list of factors with one factor for each node of a side
+  std::vector<int> sides;      ///< sides from 1; always 1 in sets of nodes and elements
+  // first factor and number of nodes of each entry, for side sets with a factor for each node of a side
   std::vector<Offset> first_factors;
   std::vector<int> nodes;
   Offset factors = 0;  ///< number of factors of all entries of the list, read or not
@@ -32,9 +32,9 @@ struct Entries {
 /// The members of a set, each once, in the sequence of their first entries.
 struct Members {
   std::vector<Index> members;
-  std::vector<Index> places;        ///< of the first entry of each
-  std::vector<std::int32_t> masks;  ///< sides of each: bit s − 1 for side s
-  std::vector<Index> row_of_entry;  ///< for each entry, the place of its member here; −1 if it is repeated
+  std::vector<Index> places;        ///< position of each member's first entry
+  std::vector<std::int32_t> masks;  ///< sides of each member: bit s − 1 for side s
+  std::vector<Index> row_of_entry;  ///< for each entry, the index of its member here; −1 if it is repeated
   int most_sides = 1;               ///< largest number of sides of a member
 };
 
@@ -107,7 +107,7 @@ class SetReader {
     const std::vector<std::int64_t> table = read_table(reading_, of, count, family_.variables.size());
     (void)file.claimed(
         "the records of " + prefix, count,
-        sizeof(SetRecord) + family_.variables.size() * 2 * sizeof(Series));  // with memory that they own
+        sizeof(SetRecord) + family_.variables.size() * 2 * sizeof(Series));  // 2: with their arrays
     for (std::size_t s = 0; s < count; ++s) {
       SetRecord& set = family_.sets[s];
       set.variables.resize(family_.variables.size());
@@ -254,8 +254,8 @@ class SetReader {
     int length;
   };
 
-  /// Adds an array with a row for each member: the values of its sides, ascending by side, those of each side
-  /// padded to `width`.
+  /// Adds an array with a row for each member: the values of its sides, ascending by side, the values of each
+  /// side padded to `width`.
   ///
   /// @param piece_of  returns the piece of entry i; the pieces ascend
   /// @param read      `read(first, count)` returns values of the list. Pieces that lie within

@@ -16,7 +16,7 @@ struct TypeName {
 
 constexpr Shape kVertex = Shape::vertex;
 
-// by the first letters of a type; the shape of SHELL depends on its number of nodes
+// shapes by the first letters of a type; the shape of SHELL depends on its number of nodes
 constexpr std::array kTypeNames{
     TypeName{"SPHERE", kVertex},     TypeName{"CIRCLE", kVertex},         TypeName{"POINT", kVertex},
     TypeName{"NODE", kVertex},       TypeName{"BAR", Shape::line},        TypeName{"BEAM", Shape::line},
@@ -51,7 +51,7 @@ constexpr std::array kWrittenTypes{
 // order in the file: nodes on the edges between the two triangles precede those on the edges of the upper
 // triangle
 constexpr std::array kWedge{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17};
-// the same for edges; then the centre, then the nodes on the faces (bottom, top, left, right, front, back)
+// nodes on edges as for wedges; then the centre, then the faces (bottom, top, left, right, front, back)
 constexpr std::array kHexahedron{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
                                  18, 19, 12, 13, 14, 15, 23, 24, 25, 26, 21, 22, 20};
 

@@ -17,7 +17,7 @@
 
 namespace meshorder::exodus {
 
-/// A block as it is written.
+/// The plan for a block of the file.
 struct BlockPlan {
   CellPart cells;
   const BlockRecord* record = nullptr;  ///< its record, if the file that the mesh came from had the block
@@ -29,7 +29,7 @@ struct BlockPlan {
   [[nodiscard]] std::string_view type() const;
 };
 
-/// The places that parts of a mesh get in a file, as far as they are known.
+/// The plan of where the blocks and arrays of a mesh go in a file; completed step by step.
 struct Planning {
   /// Returns the array of that name and adds it to `placed`; null if it does not exist or cannot be written.
   const DataArray* take(std::string_view name, Association association);
@@ -128,7 +128,7 @@ void write_plans(Writing& writing, const std::string& prefix, const std::string&
 
 inline constexpr Index kRowsAtOnce = 1 << 16;
 
-/// Divides `count` rows into parts and calls `put(first, rows)` for each. This keeps copies of values small.
+/// Calls `put(first, rows)` for consecutive parts of `count` rows: small parts keep copies of values small.
 template <class Put>
 void in_parts(Index count, const Put& put) {
   for (Index first = 0; first < count; first += std::min(kRowsAtOnce, count - first))
@@ -156,8 +156,8 @@ void write_columns(Writing& writing, const std::string& variable, NcType type,
                    const std::vector<std::string>& dimensions, const Columns& columns, Index first,
                    Index count);
 
-/// Calls `put(missing)` with the number that stands for a missing value in a variable of a type. `put` writes
-/// an array, which may be null, as numbers of that number's type.
+/// Calls `put(missing)`, where `missing` is the number that marks missing values in a variable of a type.
+/// `put` writes an array, which may be null, as numbers of the type of `missing`.
 template <class Put>
 void put_as(NcType type, const DataArray* array, const Put& put) {
   const bool is_wide = array != nullptr && std::holds_alternative<std::vector<std::uint64_t>>(array->values);
@@ -181,7 +181,7 @@ Columns attributes_of(Planning& planning, const BlockPlan& block);
 /// Declares the blocks with their elements and attributes. `attributes` has an entry for each block.
 void write_blocks(Writing& writing, const std::vector<Columns>& attributes);
 
-/// A set as it is written.
+/// The plan for a set of the file.
 struct SetPlan {
   std::int64_t id = 0;
   std::string name = {};
@@ -192,8 +192,7 @@ struct SetPlan {
   const DataArray* factors = nullptr;
   std::vector<int> factor_counts = {};  ///< side sets: number of factors of each side; empty if all are 1
   int factor_width = 1;                 ///< side sets: components of the array for one side
-  std::vector<std::vector<const DataArray*>> variables =
-      {};  ///< by variable and step, as the record has them
+  std::vector<std::vector<const DataArray*>> variables = {};  ///< by variable and step, as in `record`
 
   [[nodiscard]] bool is_full() const noexcept { return !members.empty(); }
   [[nodiscard]] std::size_t factor_count() const;
@@ -206,19 +205,18 @@ std::vector<std::vector<SetPlan>> plan_sets(Planning& planning,
 /// Declares the sets with their factors and variables. `steps` must be known.
 void write_sets(Writing& writing, const std::vector<std::vector<SetPlan>>& plans);
 
-/// A variable of nodes or elements as it is written.
+/// The plan for a variable of nodes or elements.
 struct SeriesPlan {
   std::string name;
   NcType type = kDouble;
-  std::vector<const DataArray*> arrays = {};  ///< for each step; null if the step has no array
+  std::vector<const DataArray*> arrays = {};  ///< array of each step; null if the step has none
   Index component = 0;
   std::vector<bool> present = {};   ///< as in Series
   std::vector<bool> declared = {};  ///< as in Series
 };
 
 /// Returns the variables of nodes or elements: the variables of the file that the mesh came from, then one
-/// variable for each component of the arrays that have no other place. Notes arrays that no variable can
-/// hold.
+/// variable for each component of each array that is not in `placed`. Notes arrays that no variable can hold.
 std::vector<SeriesPlan> plan_series(Planning& planning, Association association);
 
 void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series);

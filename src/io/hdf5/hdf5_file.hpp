@@ -116,7 +116,7 @@ class File {
   void set_attribute(const std::string& path, const std::string& name, double value);
   void set_attribute(const std::string& path, const std::string& name, const std::string& value);
   void set_attribute(const std::string& path, const std::string& name, std::span<const std::int64_t> values);
-  /// Gives a group or a dataset another path.
+  /// Moves a group or a dataset to another path.
   void move(const std::string& path, const std::string& new_path);
   /// Removes a group or a dataset if it is there.
   void remove(const std::string& path);
@@ -162,8 +162,8 @@ class File {
 /// Returns the path with one slash before each part and no slash at its end.
 std::string normal_path(std::string_view path);
 
-/// A copy of `bytes` as a file, to be changed and put in place: in memory for a path in a store, else beside
-/// the path. Throws as OutputFile and File.
+/// A file that begins as a copy of `bytes` and is put in place after it was changed. It is in memory if the
+/// path is in a store, else beside the path. Throws as OutputFile and File.
 class NewFile {
  public:
   NewFile(const FilePath& path, const std::string& bytes);

@@ -48,8 +48,8 @@ auto read_whole(const std::string& file, const Work& work) {
   return result;
 }
 
-/// While an object of this class lives, the session does not record calls that fail. For questions that a
-/// failed call answers, for example whether a link leads to an object.
+/// While an object of this class lives, the session does not record calls that fail. Use it for questions
+/// that a failed call answers, for example whether a link leads to an object.
 class Unwatched {
  public:
   Unwatched() {

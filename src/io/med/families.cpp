@@ -29,7 +29,7 @@ constexpr std::size_t kMostLabels = 256;
 
 std::size_t place_of(Association association) { return association == Association::vertices ? 0 : 1; }
 
-/// Returns the numbers that an array gives to all vertices or cells, 0 where it gives none.
+/// Returns the numbers that an array gives to all vertices or cells; 0 for those without a row.
 std::vector<std::int64_t> numbers_in(const Mesh& mesh, const std::string& name, Association association) {
   std::vector<std::int64_t> numbers = labels_of(mesh, association, name).values;
   numbers.resize(item_count(mesh, association), 0);
@@ -101,7 +101,7 @@ void read_families_of(Reading& reading, Association association) {
 /// item may be in thousands of groups.
 struct Combination {
   std::int64_t family;
-  std::size_t without_last;       ///< the combination without its last group
+  std::size_t without_last;       ///< index of the combination without its last group
   const std::string* last_group;  ///< null: no groups
 };
 

@@ -52,7 +52,7 @@ class FieldReader {
   /// An array of a step while its pieces are read.
   struct Gathered {
     DataArray array;                  // its indices are the vertices or cells of the rows, in any order
-    std::vector<std::size_t> pieces;  // places in the layout
+    std::vector<std::size_t> pieces;  // indices in the layout
   };
 
   void read_step(std::size_t step) {

@@ -22,7 +22,7 @@ namespace {
 /// A type of values of new fields.
 struct ValueType {
   std::int64_t number;      ///< attribute TYP of a field
-  std::size_t alternative;  ///< of Values
+  std::size_t alternative;  ///< index of an alternative of Values
 };
 constexpr ValueType kReals{6, 0};
 constexpr ValueType kIntegers{24, 6};
@@ -36,10 +36,10 @@ std::string clean_name(const std::string& given) {
   return name;
 }
 
-/// Rows of an array that belong to some vertices or to cells of a type.
+/// Rows of an array for some vertices, or for some cells of a type.
 struct Rows {
-  std::vector<Index> places;  ///< among the items, from 0, ascending
-  std::vector<Index> rows;    ///< of the array
+  std::vector<Index> places;  ///< positions among the vertices or cells of the type, from 0, ascending
+  std::vector<Index> rows;    ///< row of the array for each position
 };
 
 /// The profiles of a file that is being written.
@@ -165,7 +165,8 @@ class FieldWriter {
     });
   }
 
-  /// Returns the profile of a piece with these rows: `old` if it was one already or is not needed.
+  /// Returns the profile for these rows of a piece: named after `old` if that is one; kNoProfile for all
+  /// items.
   std::string profile_for(const std::string& old, const Rows& rows, const Piece& piece) {
     if (old != kNoProfile) return profiles_.name_for(old, rows.places);
     if (rows.rows.size() == items_of(piece.type)) return old;
@@ -353,7 +354,7 @@ class FieldWriter {
 
   Writing& writing_;
   Profiles profiles_;
-  DistinctNames names_{kLongestName};  // of fields
+  DistinctNames names_{kLongestName};  // names of fields
   const DataArray* last_array_ = nullptr;
   std::vector<Index> table_;  // rows of `last_array_` by item
 };

@@ -32,8 +32,8 @@
 namespace meshorder::med {
 
 inline constexpr std::string_view kNoProfile = "MED_NO_PROFILE_INTERNAL";
-inline constexpr std::string_view kNames = "name";                   ///< array of the names of items
-inline constexpr std::string_view kGlobalNumbers = "global number";  ///< array of the numbers GLB
+inline constexpr std::string_view kNames = "name";                   ///< name of the array of names of items
+inline constexpr std::string_view kGlobalNumbers = "global number";  ///< name of the array of the numbers GLB
 /// Name of the array of family numbers if the file has a field named `kLabel`.
 inline constexpr std::string_view kFamilies = "family";
 inline constexpr std::size_t kLongestName = 64;   ///< characters in the name of a field, profile or family
@@ -49,14 +49,14 @@ struct GeometryType {
   int nodes;
 };
 
-/// Returns all types, in the order in which `group_cells_by_type` arranges cells.
+/// Returns all types, in the sequence in which `group_cells_by_type` arranges cells.
 std::span<const GeometryType> geometry_types();
 /// Returns the type of that name, null if there is none.
 const GeometryType* geometry_type(std::string_view name);
 /// Returns the type of these cells, null if there is none.
 const GeometryType* geometry_type(Shape shape, int nodes);
-/// Returns, for each node of a cell of the file, its place in the cell of a Mesh; empty if the orders are
-/// equal.
+/// Returns, for each node of a cell of the file, its position in the cell of a Mesh; empty if both orders
+/// agree.
 std::span<const int> mesh_order(const GeometryType& type);
 
 // ---- contents of a file besides the mesh
@@ -100,13 +100,13 @@ struct Range {
 };
 /// The vertices (type null) and the cells of each type of a mesh.
 using Ranges = std::map<const GeometryType*, Range>;
-/// Returns the range of a type, an empty one if there is none.
+/// Returns the range of a type; an empty range if the mesh has no such cells.
 Range range_in(const Ranges& ranges, const GeometryType* type);
 
 /// Data of a file beyond the mesh.
 struct MedLayout final : FormatMetadata {
-  std::shared_ptr<const std::string> file;           ///< bytes, without the values that depend on the mesh
-  std::string mesh;                                  ///< name
+  std::shared_ptr<const std::string> file;           ///< bytes without the values that depend on the mesh
+  std::string mesh;                                  ///< name of the mesh
   std::string step;                                  ///< name of the group of the mesh's only step
   bool is_made = false;                              ///< made by `new_layout`
   bool in_mesh_order = false;                        ///< nodes of cells are in the order of a Mesh
@@ -124,8 +124,8 @@ struct MedLayout final : FormatMetadata {
   /// Returns the path of the group of the vertices (null) or of the cells of a type.
   [[nodiscard]] std::string path_of(const GeometryType* type) const;
   [[nodiscard]] std::string families_path(Association association) const;
-  /// Returns, for each point of a cell in the file, its place in the rows of an array; empty if the orders
-  /// are equal.
+  /// Returns, for each point of a cell in the file, its position in the rows of an array; empty if both
+  /// orders agree.
   [[nodiscard]] std::span<const int> order_of_points(const Piece& piece) const;
 
   [[nodiscard]] std::vector<std::string> contents() const override { return words; }
@@ -187,8 +187,8 @@ struct Writing {
 
   /// Writes numbers of `rows` items to a dataset and sets its attributes.
   void put(const std::string& path, const Values& values, Index rows);
-  /// Writes whole numbers with 32 bits, or with 64 if the dataset already has wider numbers or 32 are too
-  /// few.
+  /// Writes whole numbers with 32 bits, or with 64 bits if the dataset already has wider numbers or a number
+  /// does not fit.
   void put_integers(const std::string& path, std::vector<std::int64_t> values);
 };
 

@@ -204,7 +204,7 @@ void read_cells(Reading& reading, const GeometryType& type) {
     const Index* const column = numbers.data() + k * rows;
     Index* const target = cells.vertices.data() + begin + k;
     for (std::size_t c = 0; c < rows; ++c) {
-      // numbers below 1 become large
+      // as unsigned numbers, numbers below 1 become large
       const std::uint32_t place = static_cast<std::uint32_t>(column[c]) - 1;
       if (place >= last) {
         reading.fail(path, fmt::format("names node {} in cell {}, which does not exist", column[c], c + 1),

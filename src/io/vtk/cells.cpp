@@ -30,9 +30,9 @@ constexpr int kLinearWedge = 13;
 constexpr int kPyramid = 14;
 
 // The first triangle of a linear wedge faces outward in VTK up to 9.6 and in VTK's files by Gmsh and meshio.
-// It faces inward in a Mesh, in Gmsh's own files, in Lagrange wedges and in VTK 9.7. Faces, normals and
-// volumes depend on it. Quadratic wedges are ordered as in a Mesh, also in the files of Gmsh and meshio; VTK
-// 9.1 sees their faces from inside, which the notes of a later version call a mistake.
+// It faces inward in a Mesh, in Gmsh's own files, in Lagrange wedges and in VTK 9.7. This decides faces,
+// normals and volumes. Quadratic wedges are ordered as in a Mesh, also in the files of Gmsh and meshio; VTK
+// 9.1 sees their faces from inside, which the release notes of a later version call a mistake.
 constexpr std::array<std::pair<int, int>, 2> kWedge{{{1, 2}, {4, 5}}};
 
 // in the order in which a type is chosen for a shape and its vertices
@@ -197,7 +197,7 @@ bool take_cells(Mesh& mesh, FileCells& cells, const ErrorAt& error, Notes& notes
   bool plain = true;  // whether shapes and vertices determine all types
   const Index count = index_size(cells.types);
   mesh.cells.shapes.resize(count);
-  const CellType* usual_type = nullptr;  // of the last cell, if it needs no work: most cells are alike
+  const CellType* usual_type = nullptr;  // type of the last cell, if it needs no work: most cells are alike
   Offset usual_vertices = 0;
   for (Index c = 0; c < count; ++c) {
     const CellType* type = known[cells.types[c]];

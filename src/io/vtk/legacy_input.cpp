@@ -23,7 +23,7 @@ namespace {
 /// A number type and its name in files.
 struct TypeName {
   std::string_view name;
-  std::size_t alternative;  // as an alternative of Values
+  std::size_t alternative;  // index of an alternative of Values
   bool is_kept = true;      // whether the array is written under this name again
 };
 

@@ -31,8 +31,8 @@ class LegacyInput : public NumberReader {
 
   /// Reads a count, 0 … kMaxIndex.
   std::int64_t count(std::string_view what);
-  /// Fails unless the rest of the file has room for `entries` numbers of `bytes` bytes (in text: a digit and
-  /// a blank).
+  /// Fails unless the rest of the file has room for `entries` numbers, each of `bytes` bytes, or of two
+  /// characters in a text file.
   void check_room(std::int64_t entries, std::int64_t bytes, const std::string& what) const;
 
   /// Reads an array of tuples and the METADATA that may follow it.

@@ -180,8 +180,8 @@ class LegacyReader {
                "its size counts all numbers that follow");
   }
 
-  /// Reads cells as `read_counted_cells` does, but fast. If they have a fault, returns false and takes
-  /// nothing.
+  /// Reads cells as `read_counted_cells` does, but fast. If the cells have a fault, returns false and leaves
+  /// `in_` where it was.
   bool read_sound_cells(FileCells& cells, std::int64_t count, std::int64_t size) {
     Scanner at = in_.scanner;
     std::vector<std::int32_t> numbers;
@@ -231,7 +231,7 @@ class LegacyReader {
     return static_cast<Index>(vertex);
   }
 
-  /// Keeps the first fault until types are known: not all numbers of a polyhedron are points.
+  /// Keeps the first fault of a vertex until types are known: not all numbers of a polyhedron are points.
   void keep_fault_at_vertex(std::int64_t vertex, std::int64_t cell) {
     if (vertex_fault_) return;
     vertex_fault_ = InputError(

@@ -230,10 +230,10 @@ Mesh read_vtu(const FilePath& path, Notes& notes);
 /// rank of each member (from 1), which keeps their order.
 inline constexpr std::string_view kSetPrefix = "set:";
 
-/// Returns that array. `count` is the number of all vertices or cells.
+/// Returns the array "set:NAME" of a set. `count` is the number of all vertices or cells.
 DataArray marks_of(const EntitySet& set, Index count);
 
-/// Returns an array with a row for each of `count` vertices or cells; rows that it lacked are NaN or 0.
+/// Returns an array with a row for each of `count` vertices or cells; rows that `array` lacks are NaN or 0.
 DataArray full_array(const DataArray& array, Index count);
 
 /// Where a file stores the names of its arrays; this decides which characters they may have.
@@ -273,8 +273,8 @@ struct WriteContext {
 
   const Mesh& mesh;
   Notes& notes;
-  const VtkMetadata& metadata;           ///< of a mesh that came from VTK; else empty
-  std::vector<std::uint8_t> types;       ///< of the cells
+  const VtkMetadata& metadata;           ///< metadata of a mesh that came from VTK; else empty
+  std::vector<std::uint8_t> types;       ///< VTK types of the cells
   std::vector<const DataArray*> arrays;  ///< full arrays with distinct names, in order
 
  private:
@@ -291,15 +291,15 @@ struct WriteContext {
 struct Pieces {
   std::vector<Point>& points;
   FileCells& cells;
-  std::vector<DataArray>& arrays;  ///< of all points or cells
+  std::vector<DataArray>& arrays;  ///< arrays of all points or cells
   std::vector<ArrayRole>& roles;
 };
 
 /// Makes one mesh of its pieces, in place:
 /// - Leaves out the cells that `vtkGhostType` marks as cells of another piece, and the points that it marks
 ///   and that no remaining cell uses. Leaves out `vtkGhostType` itself if it marks nothing else.
-/// - Sorts points and cells by their global ids. These are in the array of that role, or of the name that VTK
-///   gives to it. Leaves out ids that are 0, 1, 2 …
+/// - Sorts points and cells by their global ids, which are in the array of that role, or of VTK's name for
+///   it. Leaves out ids that are 0, 1, 2 …
 /// - Makes one point of a point of several pieces, with the values of the piece that owns it. A point without
 ///   an id on the border of pieces stays once for each piece; a note says so.
 ///

@@ -15,7 +15,7 @@ namespace meshorder::vtk {
 /// vtkLZ4DataCompressor and vtkLZMADataCompressor write them. The build may lack some of their libraries.
 class VtuCompressor {
  public:
-  /// Bytes of a block of the arrays that meshorder writes, before it is compressed.
+  /// Uncompressed size of a block of the arrays that meshorder writes, in bytes.
   static constexpr std::size_t kBlock = std::size_t{1} << 20;
 
   /// `kind` is not `none`, and available.

@@ -25,7 +25,7 @@ std::string vtu_words(const std::vector<std::uint64_t>& values, const VtuEncodin
 struct VtuAttribute {
   std::string name;
   std::string value;
-  // of the value in the file
+  // position and size of the value in the file, in bytes
   std::size_t at = 0;
   std::size_t size = 0;
 };

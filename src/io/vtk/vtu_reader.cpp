@@ -217,8 +217,8 @@ class VtuReader {
     read_polyhedra(*cells, count, first_point);
   }
 
-  /// Reads the ends of `count` things, counted from 0, and appends them to `ends`, counted from its last
-  /// entry. Returns the last end as the array has it.
+  /// Reads `count` ends, which the array counts from 0, and appends them to `ends`, increased by its last
+  /// entry. Returns the last end in the array. Messages call an item a `thing`.
   Offset append_ends(const VtuElement& array, std::int64_t count, const char* thing,
                      std::vector<Offset>& ends) {
     const Offset first = ends.back();
@@ -335,7 +335,7 @@ class VtuReader {
         append_ends(cell_array(cells, "polyhedron_offsets", kNeeded), count, "cell", face_starts);
     const VtuElement& faces_of_cells = cell_array(cells, "polyhedron_to_faces", kNeeded);
     std::vector<Index> faces;
-    auto size = static_cast<std::uint64_t>(count);  // of all numbers of polyhedra
+    auto size = static_cast<std::uint64_t>(count);  // count of all numbers of polyhedra
     append_integers(faces_of_cells, face_count, faces, [&](std::int64_t, auto face) {
       if (std::cmp_less(face, 0) || std::cmp_greater_equal(face, corner_starts.size() - 1)) {
         throw file_->error(faces_of_cells, fmt::format("a polyhedron names the face {}", face),
@@ -511,7 +511,7 @@ class VtuReader {
   const FilePath& path_;
   Notes& notes_;
   const VtuDocument* file_ = nullptr;          ///< the file that is being read
-  int version_ = 0;                            ///< of the first file that is not empty, times ten
+  int version_ = 0;                            ///< version of the first file that is not empty, times ten
   std::map<std::string, std::size_t> fields_;  ///< places of the fields, by name
   bool is_first_ = true;                       ///< whether the file that is being read is the first
   int pieces_ = 0;                             ///< number of pieces that are not empty

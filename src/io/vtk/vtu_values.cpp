@@ -219,7 +219,7 @@ std::vector<Number> VtuDocument::words(const VtuElement& array, std::int64_t cou
     Number value{};
     const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
     const bool whole = end == word.data() + word.size();
-    // underflow is 0
+    // a number that is too small for its type counts as 0
     const bool tiny = std::is_floating_point_v<Number> && code == std::errc::result_out_of_range && whole &&
                       word.find_first_of("eE") != std::string_view::npos &&
                       word[word.find_first_of("eE") + 1] == '-';

@@ -421,7 +421,7 @@ class VtuWriter {
   std::vector<float> float_points_;
   std::vector<std::int32_t> ends_;
   std::vector<std::int64_t> wide_vertices_;
-  std::array<std::vector<std::int64_t>, 4> face_numbers_;  ///< of polyhedra
+  std::array<std::vector<std::int64_t>, 4> face_numbers_;  ///< the numbers of the arrays of polyhedra
 };
 
 }  // namespace

@@ -86,7 +86,7 @@ class VtkHdfReader {
     if (!place) return false;
     part.type = static_cast<std::uint8_t>(file_.info(path).alternative);
     part.at = static_cast<std::int64_t>(*place);
-    if (part.role == FilePart::Role::offsets) {  // without the first offset, they are the ends of cells
+    if (part.role == FilePart::Role::offsets) {  // without the first one, the offsets are the ends of cells
       --part.rows;
       part.at += part.row_size();
     }
@@ -413,7 +413,7 @@ class VtkHdfReader {
   std::shared_ptr<vtk::VtkMetadata> metadata_ = std::make_shared<vtk::VtkMetadata>();
   std::vector<Partition> partitions_;
   std::int64_t full_partitions_ = 0;  ///< partitions that have points or cells
-  vtk::FileCells cells_;              ///< of all partitions, like the arrays
+  vtk::FileCells cells_;              ///< cells of all partitions; `arrays_` also has rows of all
   std::vector<DataArray> arrays_;
   Partition all_;
   FileLayout layout_;

@@ -45,8 +45,8 @@ struct RawGrid {
 };
 
 /// Finds the bytes of the values in a file on disk. Returns nullopt if only libhdf5 can read the file, or if
-/// `read` would note something. This is so for several partitions, chunks or another byte order, texts on
-/// points or cells, and contents that the format does not define. O(datasets + size of the fields).
+/// `read` would note something: for several partitions, chunks or another byte order, texts on points or
+/// cells, and contents that the format does not define. O(datasets + size of the fields).
 ///
 /// @throws InputError as `read` for faults of counts and shapes; values are not looked at
 std::optional<RawGrid> find_raw(const FilePath& path);
@@ -54,9 +54,9 @@ std::optional<RawGrid> find_raw(const FilePath& path);
 /// Writes a file of several partitions to a path on disk, with fields, roles and counts. Allocates space for
 /// the values of its datasets, which the caller must then write.
 ///
-/// @param path      of the file
-/// @param name      of the file in messages
-/// @param layout    of all partitions; its parts receive the places of their values
+/// @param path      path of the file
+/// @param name      name of the file in messages
+/// @param layout    arrays of all partitions; its parts receive the positions of their values in the file
 /// @param metadata  fields, and roles of arrays of the layout; others are left out
 /// @param notes     receives notes on arrays and fields that have another name in the file
 /// @throws InputError if it cannot be written

@@ -24,10 +24,10 @@ struct DataPlace {
   enum class Format : std::uint8_t { xml, hdf, binary };
   Format format = Format::xml;
   std::size_t item = 0;                     ///< number of the DataItem element; see `Document::number`
-  std::string file = {};                    ///< as the XML names it
-  std::string dataset = {};                 ///< in an HDF5 file
-  std::size_t alternative = 0;              ///< of Values: the number type of the values
-  std::endian order = std::endian::native;  ///< in a binary file
+  std::string file = {};                    ///< name of the file in the XML
+  std::string dataset = {};                 ///< path in an HDF5 file
+  std::size_t alternative = 0;              ///< number type of the values: index of an alternative of Values
+  std::endian order = std::endian::native;  ///< byte order in a binary file
   std::uint64_t seek = 0;                   ///< first byte in a binary file
   std::vector<std::uint64_t> shape = {};
   /// Number of the DataItem in the Topology, Geometry, Attribute or Set: `item`, or a DataItem that refers to
@@ -43,7 +43,7 @@ struct DataPlace {
 
   /// Returns the number of values.
   [[nodiscard]] std::uint64_t count() const;
-  /// Adds a later place in the file that names the same values.
+  /// Adds a DataItem later in the file that names the same values.
   void repeat(const DataPlace& other);
 };
 
@@ -85,7 +85,7 @@ class DataReader {
   const Document& document_;
   FilePath path_;
   std::map<std::string, hdf5::File> files_;
-  std::map<std::string, std::string> binaries_;  ///< bytes of plain files
+  std::map<std::string, std::string> binaries_;  ///< contents of binary files, by name
 };
 
 }  // namespace meshorder::xdmf

@@ -24,7 +24,7 @@ inline constexpr const char* kMark = "meshorder";
 /// instead, as an attribute of this name.
 inline constexpr const char* kValueMark = "MeshorderChecksum";
 
-/// Returns whether a child of the root element is that instruction.
+/// Returns whether a child of the root element is the processing instruction `kMark`.
 bool is_mark(pugi::xml_node node);
 
 /// The XML of an XDMF file.
@@ -64,7 +64,7 @@ class Document {
   pugi::xml_document xml_;
   std::vector<pugi::xml_node> items_;
   std::unordered_map<std::size_t, std::size_t>
-      numbers_;  // of DataItems and Grids, by pugixml's hash of a node
+      numbers_;  // numbers of DataItems and Grids, by pugixml's hash of a node
   mutable std::map<std::string, std::vector<pugi::xml_node>, std::less<>> selected_;  // results, by path
 };
 

@@ -25,10 +25,10 @@ constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::array<std::string_view, 5> kPredefined{"amp", "apos", "gt", "lt", "quot"};
 
 struct Entity {
-  std::string text;      ///< as declared, with references to characters replaced
-  std::string expanded;  ///< once `is_expanded`
+  std::string text;      ///< text as declared, with references to characters replaced
+  std::string expanded;  ///< set once `is_expanded`
   bool is_expanded = false;
-  bool is_open = false;  ///< while it is being expanded
+  bool is_open = false;  ///< true while it is being expanded
   bool is_external = false;
 };
 
@@ -51,7 +51,7 @@ class Expansion {
  public:
   Expansion(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
-  /// Returns the text without declarations and with entities replaced; empty if it declares none.
+  /// Returns the text without declarations and with entities replaced; empty if it declares no entities.
   std::string run() {
     const std::size_t begin = begin_of_subset();
     if (begin == std::string_view::npos) return {};

@@ -34,7 +34,7 @@ void Writer::part_references() {
       for (DataPlace::Repeat& repeat : field.place.repeats) visit(field, repeat.item, repeat.named_by);
     }
   };
-  std::map<std::size_t, const Field*> first;  // by DataItem
+  std::map<std::size_t, const Field*> first;  // first field of each DataItem
   std::set<std::size_t> shared;
   for_each_place([&](const Field& field, std::size_t item, std::size_t /*named_by*/) {
     if (first.emplace(item, &field).first->second != &field) shared.insert(item);

@@ -22,8 +22,8 @@ struct RawGrid {
 };
 
 /// Finds the bytes of the values in a file on disk. Returns nullopt if only `read` understands the file, or
-/// if `read` would note something. This is so for several meshes, parts or HDF5 files, sets, values in XML,
-/// chunks or another byte order, cells of several types, and cells whose nodes a Mesh orders differently.
+/// if `read` would note something: for several meshes, parts or HDF5 files, sets, values in XML, chunks or
+/// another byte order, cells of several types, and cells whose nodes a Mesh orders differently.
 /// O(size of the XML + datasets).
 ///
 /// @throws InputError as `read` for faults of the XML and of shapes; values are not looked at

@@ -214,9 +214,9 @@ class XdmfReader {
     return find_values(item, Field::Role::data, on_vertices ? Association::vertices : Association::cells, 0);
   }
 
-  /// Adds the dataset of a DataItem as rows of `components` numbers; if 0, as many components as the number
-  /// of points or cells gives. The first call must be for the points, the second for the topology; other
-  /// Grids must name the same datasets. Returns false if the bytes of the dataset cannot be read directly.
+  /// Adds the dataset of a DataItem as rows of `components` numbers; 0: as many as follow from the number of
+  /// points or cells. The first call must be for the points, the second for the topology; other Grids must
+  /// name the same datasets. Returns false if the bytes of the dataset cannot be read directly.
   bool find_values(pugi::xml_node item, Field::Role role, Association association, Index components) {
     constexpr std::size_t kLastReal = 1;
     constexpr std::size_t kInt32 = 6;
@@ -237,7 +237,7 @@ class XdmfReader {
       return part.role == role && part.association == association;
     }
     FilePart part{role, association, static_cast<std::uint8_t>(place.alternative), components, rows};
-    // only one mesh, of real coordinates and of indices that have 32 bits or more
+    // accept only one mesh, with real coordinates and indices of 32 bits or more
     if (role == Field::Role::points) {
       if (!raw_.parts.empty() || place.alternative > kLastReal) return false;
       raw_.vertices = rows;
@@ -292,7 +292,7 @@ class XdmfReader {
 
   // ---- points
 
-  /// Returns the coordinates that a Geometry has; `fields` receives where they are.
+  /// Returns the coordinates of a Geometry; `fields` receives the fields that describe them.
   std::vector<Point> points_of(pugi::xml_node geometry, std::vector<Field>& fields, int& dimension) {
     std::string type = attribute(geometry, "GeometryType", "Type");
     if (type.empty()) type = "XYZ";

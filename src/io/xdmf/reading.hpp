@@ -103,7 +103,7 @@ class ArrayReader {
   /// An array to which the rows of several parts may be appended.
   struct GrowingArray {
     DataArray array;
-    std::vector<bool> has_row;  ///< by cell; empty before rows are appended
+    std::vector<bool> has_row;  ///< whether each cell has a row; empty before rows are appended
   };
 
   /// Adds an array under a free name, its own name if possible; returns the name.

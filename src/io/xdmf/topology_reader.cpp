@@ -181,7 +181,7 @@ FileCells cells_of(Reading& reading, pugi::xml_node topology, pugi::xml_node ite
   return piece;
 }
 
-/// Returns the cells read before that equal the cells of a piece; nullopt if the piece has a new cell.
+/// Returns, for each cell of a piece, an earlier cell of the same type and vertices; nullopt if one is new.
 std::optional<std::vector<Index>> known_cells(const Reading& reading, const FileCells& piece) {
   const Index count = index_size(piece.types);
   std::array<bool, 256> types{};
@@ -231,7 +231,7 @@ bool is_part(const Reading& reading, int part, const FileCells& piece) {
   return true;
 }
 
-/// Appends the cells of a piece to those of the mesh; returns their places.
+/// Appends the cells of a piece to those of the mesh; returns their indices.
 std::vector<Index> append(Reading& reading, pugi::xml_node topology, FileCells piece) {
   const Index first = index_size(reading.cells.types);
   const Index count = index_size(piece.types);

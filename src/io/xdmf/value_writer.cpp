@@ -144,7 +144,7 @@ void Writer::put_binary(pugi::xml_node item, const DataPlace& place, const Value
 }
 
 std::string Writer::text_of_values(const Values& values, std::size_t components) {
-  constexpr std::size_t kMostCharacters = 32;  // of a number and the blank after it
+  constexpr std::size_t kMostCharacters = 32;  // for a number and the blank after it
   constexpr std::size_t kUsualCharacters = 20;
   std::string text;
   with_numbers(values, [&]<class Number>(const std::vector<Number>& numbers) {

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// Writes .xdmf files and the files of values that they name. Parts of the mesh go to their places in the
-// layout; parts without a place are added.
+// Writes .xdmf files and the files of values that they name. Data of the mesh that the layout has a field for
+// go to this field; other data are added.
 
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/named_parts.hpp"
@@ -30,12 +30,12 @@ namespace meshorder::xdmf {
 
 /// An HDF5 file that is being written.
 struct Hdf5Output {
-  std::string name;  ///< in the new XML
+  std::string name;  ///< name in the new XML
   std::unique_ptr<hdf5::NewFile> out;
   hdf5::File* file = nullptr;
   std::set<std::string> datasets;
   std::set<std::string> written;  ///< datasets that have values of the mesh already
-  int next_array = 0;             ///< lowest number that an array without a name of its own may have
+  int next_array = 0;             ///< lowest number that may be free for a dataset /Attributes/NUMBER
 };
 
 /// See `write` and `SplitFile`.
@@ -81,7 +81,7 @@ class Writer {
   void put(const DataPlace& place, const Values& values, std::size_t components);
   /// Writes indices to a place in its number type, unless that type is too narrow.
   void put_indices(const DataPlace& place, std::span<const Index> indices, std::size_t components);
-  /// Writes the name of a dataset to the XML of a made layout; `rename_files` replaces the file in it.
+  /// Writes the name of a dataset to the XML of a made layout; `rename_files` replaces the file's name in it.
   void name_dataset(const DataPlace& place);
   void put_binary(pugi::xml_node item, const DataPlace& place, const Values& values);
   static std::string text_of_values(const Values& values, std::size_t components);
@@ -137,12 +137,12 @@ class Writer {
   pugi::xml_document xml_;
   std::vector<pugi::xml_node> items_;
   std::vector<pugi::xml_node> grids_;
-  std::map<std::string, Hdf5Output> files_;  // by their names in the old XML
+  std::map<std::string, Hdf5Output> files_;  // by names in the old XML
   std::map<std::string, std::vector<std::uint64_t>>
       shapes_;  // shapes that have changed, by the new name of a dataset
   std::vector<OutputFile> binaries_;
   std::set<const Field*> gone_;                 // fields that the mesh no longer has
-  std::map<Association, DistinctNames> names_;  // of arrays
+  std::map<Association, DistinctNames> names_;  // names of arrays
 };
 
 /// Sets the attribute `other` if the element has `other` but not `name`; otherwise sets or adds `name`.

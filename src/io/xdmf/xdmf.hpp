@@ -26,7 +26,7 @@ namespace meshorder::xdmf {
 /// A topology type.
 struct TopologyType {
   std::string_view name;
-  int number;  ///< in mixed topologies
+  int number;  ///< number in mixed topologies
   int vtk;     ///< VTK's number of the type
   Shape shape;
   int nodes;  ///< 0: any number, which mixed topologies give for each cell
@@ -71,13 +71,13 @@ struct Field {
   int part = 0;  ///< number of the part, for cells
   Association association = Association::vertices;
   std::string name = {};  ///< name of the array or the set
-  int axis = -1;          ///< of points whose coordinates are separate arrays; −1: the points are one array
+  int axis = -1;          ///< axis of the coordinates in this array; −1: the array has all axes
   int base = 0;           ///< number of the first point in a topology
 };
 
 /// Data of XDMF's files beyond the mesh.
 struct XdmfLayout final : FormatMetadata {
-  std::string stem;                         ///< of the name of the .xdmf file
+  std::string stem;                         ///< stem of the name of the .xdmf file
   std::string xml;                          ///< without values
   std::map<std::string, std::string> hdf5;  ///< bytes of files without values, by their names in the XML
   std::vector<TopologyPart> parts;
