@@ -20,7 +20,7 @@
 
 namespace meshorder::distributed {
 
-/// Initialises MPI and finalises it at the end. A process makes one, before any `Communicator`.
+/// Initialises MPI; the destructor finalises MPI. A process makes one Session, before any `Communicator`.
 class Session {
  public:
   /// @throws Unavailable if MPI does not support calls from several threads, which PT-Scotch needs
@@ -91,7 +91,7 @@ class Communicator {
   [[nodiscard]] int size() const noexcept { return size_; }
   [[nodiscard]] bool is_root() const noexcept { return rank_ == 0; }
 
-  /// Returns how many ranks share this one's memory, itself included.
+  /// Returns how many ranks run on this rank's machine, this rank included.
   [[nodiscard]] int ranks_on_this_machine() const;
 
   /// Sets the maximum size of a message in bytes, 1 … 2^31 − 1: MPI 3 counts bytes by an int.
@@ -130,8 +130,8 @@ class Communicator {
   /// Returns the values of the root that belong to this rank: rank r gets starts[r] … starts[r + 1] − 1.
   /// Throws as `exchange`.
   ///
-  /// @param at_root  ignored on other ranks
-  /// @param starts   ranks + 1, ascending; on other ranks only its size is used
+  /// @param at_root  values of the root; ignored on other ranks
+  /// @param starts   ranks + 1, ascending; only the size is used on other ranks
   template <class T>
   [[nodiscard]] std::vector<T> scattered_from_root(const std::vector<T>& at_root,
                                                    const std::vector<Offset>& starts) const {
@@ -176,7 +176,7 @@ class Communicator {
 
   /// Calls `work` on this rank and returns its result. `work` must not communicate.
   ///
-  /// @throws SharedError on all ranks if `work` throws on one
+  /// @throws SharedError on all ranks if `work` throws on any rank
   template <class Work>
   auto together(const Work& work) const {  // NOLINT(modernize-use-nodiscard): work may return nothing
     using Result = std::invoke_result_t<const Work&>;

@@ -75,10 +75,10 @@ class HaloValues {
   HaloValues(const Halo& halo, GlobalIndex first, std::vector<T> own)
       : halo_(halo), first_(first), own_(std::move(own)), others_(halo.fetch(own_)) {}
 
-  /// Returns the k-th own value.
+  /// Returns the value of the k-th number that this rank owns.
   [[nodiscard]] const T& own(Offset k) const { return own_[static_cast<std::size_t>(k)]; }
   [[nodiscard]] const std::vector<T>& own() const noexcept { return own_; }
-  /// Returns the value of a number that is the rank's own or the halo's. O(1), or as `Halo::position`.
+  /// Returns the value of a number that the rank owns or the halo has. O(1), or as `Halo::position`.
   [[nodiscard]] const T& operator[](GlobalIndex number) const {
     const GlobalIndex k = number - first_;
     if (k >= 0 && k < std::ssize(own_)) return own(k);
@@ -94,10 +94,10 @@ class HaloValues {
 
 /// Sends values to the owners of their numbers. Every rank has to call it. O(numbers · log ranks).
 ///
-/// @param numbers  in any order, each on one rank at most
-/// @param values   one for each number
+/// @param numbers  numbers in any order, each on one rank at most
+/// @param values   one value for each number
 /// @param missing  value for a number that no rank passes
-/// @return the values of this rank's own numbers
+/// @return the values of the numbers that this rank owns
 /// @throws as `Communicator::exchange`
 template <class T>
 [[nodiscard]] std::vector<T> delivered(const Communicator& communicator, const Layout& layout,

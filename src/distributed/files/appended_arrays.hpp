@@ -14,8 +14,8 @@
 
 namespace meshorder::distributed {
 
-/// The XML of a .vtu file up to the underscore before its appended data, with the offsets of the arrays
-/// there.
+/// The XML of a .vtu file up to the underscore before its appended data, and the offsets of the arrays in
+/// these data.
 class VtuXml {
  public:
   VtuXml() = default;

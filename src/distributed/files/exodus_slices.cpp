@@ -19,8 +19,8 @@ namespace meshorder::distributed {
 #ifdef MESHORDER_HAS_NETCDF
 namespace {
 
-/// Returns the number of vertices of a file, whether pieces can keep its blocks (1 or 0), and the ends of the
-/// blocks; nothing for a file that the ranks cannot read together.
+/// Returns the number of vertices of a file, whether pieces can keep its blocks (1 or 0), then 0 and the end
+/// of each block; nothing for a file that the ranks cannot read together.
 std::vector<GlobalIndex> counts_of(const std::string& path) {
   std::error_code code;
   if (format_of(path).key() != "exodus" || without_gz(path) != path ||

@@ -33,7 +33,7 @@ class ExodusSlices {
   /// Returns 0 and the end of each block of elements.
   [[nodiscard]] const std::vector<GlobalIndex>& block_ends() const noexcept { return block_ends_; }
   /// Returns whether Nemesis pieces can keep these blocks: there are not too many, and the file is not a
-  /// piece itself.
+  /// piece.
   [[nodiscard]] bool has_blocks_of_pieces() const noexcept { return has_blocks_of_pieces_; }
 
   /// Reads this rank's points and cells. Every rank has to call it. O(size of the slice).

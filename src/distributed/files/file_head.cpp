@@ -30,7 +30,7 @@ bool is_hdf5(const std::string& path) {
 }
 
 #ifdef MESHORDER_HAS_HDF5
-/// Returns the head of a file whose parts are in an HDF5 file; nothing if parts overlap there.
+/// Returns the head of a file whose parts are in an HDF5 file; nothing if parts overlap in it.
 std::optional<FileHead> head_of(FileFacts::Kind kind, FileLayout layout, const std::string& path) {
   FileHead head;
   head.path = path;

@@ -98,8 +98,8 @@ void MeshParts::find_own(const Mesh& mesh, const std::vector<GlobalIndex>& part_
 }
 
 /// Adds the parts of other ranks that have a vertex. For each vertex, every rank tells the owner of the
-/// vertex's number which of its own parts have the vertex. If several parts have it, the owner sends the list
-/// of them to the ranks of these parts.
+/// vertex's number which of its own parts have the vertex. If several parts have it, the owner sends their
+/// list to the ranks of these parts.
 void MeshParts::find_sharing_parts(const Communicator& communicator, const ShareNumbers& numbers) {
   if (communicator.size() == 1) return;
   struct Letter {

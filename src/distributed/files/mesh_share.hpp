@@ -24,8 +24,8 @@ struct ShareNumbers {
 /// vertices of these parts, and their arrays, sets and ids.
 struct MeshShare {
   /// Vertices and cells are in the order of their numbers. All sets are kept, even without members. An array
-  /// on only some vertices or cells is dropped if it has no rows here. Rows and members keep the file's
-  /// order.
+  /// on only some vertices or cells is dropped if it has no rows in the share. Rows and members keep the
+  /// file's order.
   Mesh mesh;
   ShareNumbers numbers;
   bool has_vertex_ids = false;  ///< whether any rank has vertex ids

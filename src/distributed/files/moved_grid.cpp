@@ -30,7 +30,7 @@ class PartGrid {
     types_ = communicator.together([&] { return vtk::cell_types(moved.part().mesh); });
   }
 
-  /// Returns the rows of the k-th array of the file that are in this rank's places.
+  /// Returns the rows of the k-th array of the file that move to this rank's places.
   [[nodiscard]] std::vector<std::byte> rows_of_array(std::size_t k) const {
     if (k > arrays_.size())  // types, the last array
       return moved_.moved(Association::cells, std::as_bytes(std::span(types_)), 1);

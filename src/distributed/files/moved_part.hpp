@@ -74,7 +74,7 @@ class MovedPart {
     std::vector<GlobalIndex> places;  ///< new place of each vertex or cell of the part
     std::optional<RowMover> mover;
     bool has_ids = false;
-    std::optional<RowMover> ids_mover;  ///< moves ids to their places
+    std::optional<RowMover> ids_mover;  ///< moves ids to their new places
   };
 
   [[nodiscard]] const Entities& entities(Association association) const {

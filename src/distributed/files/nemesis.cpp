@@ -90,8 +90,8 @@ void add_integers(ExodusMetadata& metadata, std::string_view name, std::string_v
 
 constexpr std::string_view kFiles = "num_procs_file";
 
-/// Adds communication maps of nodes ("n") or elements ("e"), one for each other part. A map's id is the
-/// number of that part.
+/// Adds communication maps of nodes ("n") or elements ("e"), one for each part that shares some. A map's id
+/// is the number of that part.
 void add_maps(ExodusMetadata& metadata, const std::string& of,
               const std::map<Index, std::vector<std::int64_t>>& maps) {
   std::vector<std::int64_t> ids;
@@ -127,7 +127,7 @@ std::vector<std::int64_t> counts_of_sets(const Mesh& mesh) {
       const auto plan =
           std::find_if(plans[kind].begin(), plans[kind].end(),
                        [&](const exodus::SetPlan& candidate) { return candidate.record == &record; });
-      const bool is_there = plan != plans[kind].end();  // an array without rows here is dropped
+      const bool is_there = plan != plans[kind].end();  // an array without rows in this share is dropped
       counts.push_back(is_there ? std::ssize(plan->members) : 0);
       counts.push_back(is_there ? static_cast<std::int64_t>(plan->factor_count()) : 0);
     }
@@ -319,7 +319,7 @@ class NemesisPieces {
            source_.element_numbers);
   }
 
-  /// Returns the metadata of a piece: those of the whole mesh, without the arrays that have no rows in it.
+  /// Returns the metadata of a piece: those of the whole mesh, without arrays that have no rows in the piece.
   [[nodiscard]] ExodusMetadata metadata_of(const Mesh& piece) const {
     ExodusMetadata metadata = metadata_;
     const auto has = [&](const std::string& array) {
@@ -412,7 +412,7 @@ struct Held {
   std::vector<GlobalIndex> given_cells;
 };
 
-/// Writes a mesh to memory, and reads it from there.
+/// Writes a mesh to memory as an Exodus II file, and reads this file.
 Held held(const Mesh& mesh, Notes& notes) {
   TextStore store;
   std::vector<GlobalIndex> given_cells;

@@ -89,7 +89,7 @@ std::vector<std::vector<BorderFacet>> facets_between(const Communicator& communi
   const std::vector<Match> own = sent_to_ranks(communicator, communicator.together([&] {
     std::vector<Match> matches;
     for_pairs(asked, [&](const Candidate& a, const Candidate& b) {
-      // both in one step, so that the lists of the two parts have the same sequence
+      // add both at once, so that the lists of the two parts have the same sequence
       matches.push_back({a.cell, a.part, b.part, a.facet});
       matches.push_back({b.cell, b.part, a.part, b.facet});
     });

@@ -12,9 +12,9 @@ namespace meshorder::distributed {
 
 /// A facet that a cell shares with a cell of another part.
 struct BorderFacet {
-  Index part = 0;  ///< the other part
+  Index part = 0;  ///< part of the other cell
   Index cell = 0;
-  int facet = 0;  ///< place in `facets` of the cell's shape
+  int facet = 0;  ///< index in `facets` of the cell's shape
 
   bool operator==(const BorderFacet&) const = default;
 };

@@ -51,7 +51,7 @@ CellsToPieces sent_to_pieces(const Rows& cell_vertices, GlobalIndex first_cell,
 
 /// A cell of a piece.
 struct CellOfPiece {
-  Index part;  ///< the cell's own part
+  Index part;  ///< part to which the cell belongs
   Offset row;
 };
 

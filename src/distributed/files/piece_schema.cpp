@@ -136,7 +136,7 @@ PieceSchema::PieceSchema(const std::string& xml, std::string fields, int ghosts)
                    [](const PieceArray& a, const PieceArray& b) { return section_of(a) < section_of(b); });
 }
 
-/// Adds the roles of a section's arrays, except that of global ids: pieces have their own.
+/// Adds the roles of a section's arrays, except that of global ids: pieces have global ids of their own.
 void PieceSchema::add_roles(const vtk::VtuElement& section, Association association) {
   for (std::size_t role = 0; role < vtk::kXmlRoles.size(); ++role) {
     const std::string_view name = section.text_of(vtk::kXmlRoles[role]);

@@ -12,8 +12,8 @@
 
 namespace meshorder::distributed {
 
-/// A file that all ranks read or write at the same time by MPI-IO, each its own bytes. Every rank has to call
-/// all functions.
+/// A file that all ranks read or write at the same time by MPI-IO; each rank has its own range of bytes.
+/// Every rank has to call all functions.
 class SharedFile {
  public:
   enum class Use : std::uint8_t { read, write };
@@ -44,7 +44,7 @@ class SharedFile {
   void close();
 
  private:
-  /// Words of the messages for a call that fails and for one that moves too few bytes.
+  /// Texts for messages on a call that fails, and on a call that moves too few bytes.
   struct Words {
     std::string_view fault;
     std::string_view too_short;  ///< text before the number of the byte where the transfer should have ended

@@ -153,7 +153,7 @@ class HeadReader {
     return true;
   }
 
-  /// Returns whether an array that is not a part of `head_` begins inside such a part.
+  /// Returns whether an array that is not in `head_.parts` begins inside one of these parts.
   [[nodiscard]] bool begins_within() const {
     const std::vector<Offset> offsets = head_.xml.offsets();
     return std::any_of(offsets.begin(), offsets.end(), [&](Offset offset) {

@@ -29,7 +29,7 @@ Rows with_numbers(const Rows& cell_vertices, GlobalIndex first) {
   return rows;
 }
 
-/// Returns the vertices of the cells in such rows.
+/// Returns the vertices of cells in rows of `with_numbers`.
 NumberSet vertices_in(const Rows& rows) {
   std::vector<GlobalIndex> vertices;
   vertices.reserve(rows.entries.size());
@@ -38,8 +38,8 @@ NumberSet vertices_in(const Rows& rows) {
   return NumberSet(vertices);
 }
 
-/// Returns the numbers of the cells in such rows, sorted by `lexmax`. The cells' numbers must ascend. The
-/// vertices of these rows are renumbered 0, 1, …, in the same sequence.
+/// Returns the numbers of cells in rows of `with_numbers`, sorted by `lexmax`. The cells' numbers must
+/// ascend. The vertices of these rows are renumbered 0, 1, …, in the same sequence.
 std::vector<GlobalIndex> sorted_by_lexmax(Rows rows) {
   Incidence cells;
   std::vector<GlobalIndex> numbers;
@@ -148,7 +148,7 @@ std::vector<GlobalIndex> places_by_block(const Communicator& communicator, const
     for (const GlobalIndex cell : in_order) ++result[block_of(cell)];
     return result;
   });
-  // the first free place of each block for each rank
+  // where each rank begins to fill each block
   std::vector<GlobalIndex> next = communicator.gathered_at_root(counts);
   communicator.at_root([&] {
     std::vector<GlobalIndex> free(block_ends.begin(), block_ends.end() - 1);

@@ -12,10 +12,10 @@ namespace meshorder::distributed {
 
 /// A connected component of a graph, and the rank that computes its Fiedler vector.
 struct Component {
-  GlobalIndex place;  ///< 0 … components − 1: the largest first, ties by their smallest vertices
-  GlobalIndex start;  ///< number of vertices of the components before it
+  GlobalIndex place;  ///< rank by size, from 0 for the largest; ties by the smallest vertex
+  GlobalIndex start;  ///< number of vertices of the components of lower `place`
   GlobalIndex size;   ///< number of vertices, ≥ 1
-  int solver;         ///< the only rank that solves it, or `kAllRanks`
+  int solver;         ///< the only rank that solves the component, or `kAllRanks`
 };
 
 constexpr int kAllRanks = -1;

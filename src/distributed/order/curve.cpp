@@ -13,7 +13,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Key of unused vertices: larger than those of all points.
+/// Key of unused vertices, larger than the keys of used ones.
 constexpr std::uint64_t kUnused = std::numeric_limits<std::uint64_t>::max();
 
 /// Returns the lattice of the bounding box of all ranks' used points.

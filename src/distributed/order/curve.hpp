@@ -9,7 +9,7 @@
 
 namespace meshorder::distributed {
 
-/// The numbers of a mesh's vertices along a Hilbert curve. Vertices with the same place on the curve are
+/// The numbers of a mesh's vertices along a Hilbert curve. Vertices at the same point of the curve are
 /// sorted by their numbers in the file; unused vertices come last, in the order of the file. The numbers are
 /// the same on any number of ranks.
 struct Curve {

@@ -40,8 +40,8 @@ Incidence renumbered(const Rows& elements, const NumberSet& numbers) {
   return result;
 }
 
-/// Returns the rows of a rank's own vertices from a graph whose k-th vertex has the global number
-/// `numbers[k]`. Own vertices that are not in `numbers` get empty rows.
+/// Returns the rows of the vertices that a rank owns from a graph whose k-th vertex has the global number
+/// `numbers[k]`. Vertices of the rank that are not in `numbers` get empty rows.
 Rows own_rows(const CsrGraph& graph, const std::vector<GlobalIndex>& numbers, const Layout& layout,
               int rank) {
   const auto place_of = [&](GlobalIndex number) {

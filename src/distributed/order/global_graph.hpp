@@ -24,7 +24,7 @@ struct GlobalGraph {
 /// @param layout    the owners of the vertices
 /// @param elements  vertices of each element on this rank; freed before the graph is built, because they take
 ///                  as much memory as the graph
-/// @throws SharedError if the elements at a rank's own vertices have more than
+/// @throws SharedError if the elements at a rank's vertices have more than
 ///         2,147,483,647 different vertices,
 ///         or if a rank lacks memory
 [[nodiscard]] GlobalGraph global_graph(const Communicator& communicator, const Layout& layout, Rows elements);

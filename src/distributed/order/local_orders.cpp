@@ -113,7 +113,7 @@ void put_interface_last(std::vector<Index>& places, const std::vector<char>& is_
   }
 }
 
-/// Returns the new place of each vertex of a part within the part.
+/// Returns the position of each vertex of a part in the part's order.
 std::vector<Index> places_in(const LocalPart& part, std::string_view method, InterfacePlace interface_place,
                              const OrderOptions& options) {
   const Order order = in_call(options.run, [&] {

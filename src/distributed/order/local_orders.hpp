@@ -13,7 +13,7 @@
 
 namespace meshorder::distributed {
 
-/// New numbers of vertices, contiguous by part, and figures on the parts.
+/// New numbers of vertices, contiguous by part, and properties of the parts.
 struct PartOrders {
   std::vector<GlobalIndex> new_numbers;  ///< new number of the vertex of each row of the graph
   std::vector<GlobalIndex> starts;       ///< first new number of each part, then the end of the last part
@@ -29,7 +29,7 @@ struct PartOrders {
 /// @param graph     numbered along `curve`; a part's vertices go to the method in that order
 /// @param place_of  for each vertex, the position of its part in the order of the parts
 /// @param method    name of a vertex method
-/// @param interface_place place of the vertices with neighbours in other parts
+/// @param interface_place where a part's order has the vertices with neighbours in other parts
 /// @throws as `Communicator::exchange`; SharedError with what the method throws
 [[nodiscard]] PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph& graph,
                                           const Curve& curve, const HaloValues<Index>& place_of, Index parts,

@@ -27,7 +27,7 @@ namespace {
 /// file.
 constexpr std::array<std::string_view, 3> kNotInParts{"auto", "original", "scrambled"};
 
-/// Records the time of each stage; a stage begins where the one before ended.
+/// Records the time of each stage; a stage begins when the previous stage ends.
 class Stages {
  public:
   explicit Stages(DistributedReport& report) : report_(report) {}
@@ -65,7 +65,7 @@ void renumber(Rows& rows, const Halo& halo, const std::vector<GlobalIndex>& valu
   for (GlobalIndex& vertex : rows.entries) vertex = values[halo.position(vertex)];
 }
 
-/// Marks the vertices of a slice that elements use: those that the elements' halo fetches from this rank.
+/// Marks the vertices of a slice that elements use: the elements' halo fetches them from this rank.
 std::vector<char> used_vertices(const Communicator& communicator, const Layout& vertices, const Halo& halo) {
   return communicator.together([&] {
     std::vector<char> used(static_cast<std::size_t>(vertices.size(communicator.rank())), 0);

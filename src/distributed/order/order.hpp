@@ -22,7 +22,7 @@ struct DistributedOptions {
   /// the whole mesh and must be `fiedler`.
   std::string vertices = "spectral";
   Partitioner partitioner = Partitioner::ptscotch;
-  Index parts = 0;  ///< 0: one for each rank
+  Index parts = 0;  ///< number of parts; 0: one for each rank
   Balance balance = Balance::vertices;
   InterfacePlace interface_place = InterfacePlace::mixed;
   OrderOptions order = {};  ///< seed, tolerance, max_iterations and run
@@ -32,11 +32,11 @@ struct DistributedOptions {
 /// number of parts.
 void check_options(const DistributedOptions& options);
 
-/// Figures on an order.
+/// Properties of an order, and how long it took.
 struct DistributedReport {
   Index parts = 0;
   Partitioner partitioner = Partitioner::ptscotch;  ///< the partitioner that made the parts
-  std::string partition_reason;  ///< why the requested partitioner was not used; else empty
+  std::string partition_reason;  ///< why the requested partitioner was not used; empty if it was
   double imbalance = 1;          ///< largest part / mean part, in the balanced quantity: vertices or cells
   GlobalIndex edges = 0;
   GlobalIndex cut = 0;                   ///< number of edges between parts
@@ -44,7 +44,7 @@ struct DistributedReport {
   std::vector<GlobalIndex> part_starts;  ///< first new number of each part, then the end of the last part
   std::vector<GlobalIndex> interfaces;   ///< for each part, the number of vertices on its interface
   std::vector<FiedlerComponent>
-      fiedler;  ///< `Partitioner::order`: of all components, largest first; at the root
+      fiedler;  ///< for `Partitioner::order`: all components, largest first; at the root
   GlobalEdgeSpan before;
   GlobalEdgeSpan after;
   std::vector<std::pair<std::string_view, double>> seconds;  ///< of each stage, in sequence
@@ -57,17 +57,17 @@ struct DistributedOrder {
   DistributedReport report;
 };
 
-/// Orders a mesh. Parts that touch get near numbers. The method orders the vertices of a part; vertices that
-/// no element uses come last, in their old order. Cells are in the order `lexmax`. With `Partitioner::order`
-/// the method orders all vertices, and parts are equal ranges of that order. Every rank has to
-/// call it.
+/// Orders a mesh. Parts with common edges get near numbers. The method orders the vertices of a part;
+/// vertices that no element uses come last, in their old order. Cells are in the order `lexmax`. With
+/// `Partitioner::order` the method orders all vertices, and parts are equal ranges of that order. Every rank
+/// has to call it.
 ///
 /// @param slice  its arrays are freed as soon as they are no longer needed
 /// @throws SharedError for a method that does not exist or has no meaning within parts, for a negative number
 ///         of parts, for `Partitioner::order` with another method than `fiedler` or with a balance or place
 ///         of interfaces that equal ranges cannot have, and if a rank fails
-/// @note The same order for the same mesh, options and number of ranks; with `Partitioner::hilbert` and a
-///       given number of parts, on any number of ranks and threads.
+/// @note The order depends only on the mesh, the options and the number of ranks; with `Partitioner::hilbert`
+///       and a given number of parts, it does not depend on the number of ranks.
 [[nodiscard]] DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
                                             const DistributedOptions& options);
 

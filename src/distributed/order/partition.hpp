@@ -21,16 +21,16 @@ namespace meshorder::distributed {
 /// Methods of cutting a graph into parts.
 enum class Partitioner : std::uint8_t {
   ptscotch,  ///< few edges between parts; the same parts for the same graph on the same number of ranks
-  hilbert,   ///< ranges of the graph's own order with equal weights; the same on any number of ranks
+  hilbert,   ///< ranges of the graph's numbers with equal weights; the same on any number of ranks
   rsb,       ///< recursive spectral bisection, see `bisected`
   order,     ///< equal ranges of one order of the whole graph; parts are not ordered separately
 };
 
-/// The place of a part's interface in the order of the part. The interface is the set of vertices that share
+/// Where the order of a part has the part's interface. The interface is the set of vertices that share
 /// an element with vertices of other parts.
 enum class InterfacePlace : std::uint8_t {
   mixed,  ///< anywhere, as the method orders them
-  last,   ///< after the other vertices of the part; both keep the order that the method gives them
+  last,   ///< after the part's other vertices; both groups keep the method's order
 };
 
 }  // namespace meshorder::distributed
@@ -65,8 +65,8 @@ struct Partition {
 };
 
 /// Cuts a graph into parts of about the same weight. `ptscotch` cuts graphs of up to 100,000 vertices by two
-/// of its strategies, and keeps the parts with fewer edges between them. If it fails or the graph is too
-/// small for it, `hilbert` is used instead. Every rank has to call it.
+/// of its strategies, and keeps the parts with fewer edges between them. If PT-Scotch fails or the
+/// graph is too small for it, `hilbert` is used instead. Every rank has to call it.
 ///
 /// @param graph    numbered along a Hilbert curve from 0 on, equal shares on all ranks
 /// @param parts    ≥ 1
@@ -102,8 +102,8 @@ enum class ScotchStrategy : std::uint8_t { speed, quality };
   return static_cast<Index>(behind - starts.begin()) - 1;
 }
 
-/// Returns the part of a cell: that of the largest new number of its vertices (at least one), so that the
-/// parts of cells in the order `lexmax` ascend. O(vertices + log parts).
+/// Returns the part of a cell: the part of its vertex with the largest new number. Parts of cells in the
+/// order `lexmax` thus ascend. A cell has at least one vertex. O(vertices + log parts).
 template <class Number>
 [[nodiscard]] Index part_of_cell(std::span<const Number> vertices, const std::vector<GlobalIndex>& starts) {
   return part_of(*std::max_element(vertices.begin(), vertices.end()), starts);
@@ -111,7 +111,7 @@ template <class Number>
 
 /// An order of the parts of a graph.
 struct Quotient {
-  std::vector<Index> place_of;  ///< place of each part in the order
+  std::vector<Index> place_of;  ///< position of each part in the order
   GlobalIndex cut = 0;          ///< number of edges between parts
 };
 

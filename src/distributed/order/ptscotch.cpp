@@ -14,7 +14,7 @@
 static_assert(std::is_same_v<SCOTCH_Num, meshorder::distributed::GlobalIndex>,
               "the header is that of a PT-Scotch with other than 64-bit numbers");
 
-// Silences PT-Scotch's own error messages. Its functions also return errors, which are reported once for all
+// Silences the error messages of PT-Scotch. Its functions also return errors, which are reported once for all
 // ranks.
 extern "C" {
 void SCOTCH_errorProg(const char* /*program*/) {}
@@ -36,8 +36,8 @@ using Context = std::unique_ptr<SCOTCH_Context, End<SCOTCH_Context, SCOTCH_conte
 using Strategy = std::unique_ptr<SCOTCH_Strat, End<SCOTCH_Strat, SCOTCH_stratExit>>;
 using Graph = std::unique_ptr<SCOTCH_Dgraph, End<SCOTCH_Dgraph, SCOTCH_dgraphExit>>;
 
-/// Sets up `context` for repeatable results: a fixed seed, one thread, and random numbers of its own, so that
-/// they do not depend on earlier calls. Returns whether that succeeded.
+/// Sets up `context` for repeatable results: a fixed seed, one thread, and its own random numbers, which do
+/// not depend on earlier calls. Returns whether that succeeded.
 bool make_deterministic(SCOTCH_Context* context) {
   return SCOTCH_contextOptionSetNum(context, SCOTCH_OPTIONNUMDETERMINISTIC, 1) == 0 &&
          SCOTCH_contextOptionSetNum(context, SCOTCH_OPTIONNUMRANDOMFIXEDSEED, 1) == 0 &&

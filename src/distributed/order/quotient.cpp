@@ -81,7 +81,7 @@ ArrangementGraph graph_of(const std::vector<Border>& borders, Index parts) {
   return graph;
 }
 
-/// Returns the places of the parts: first along the Fiedler vector of their graph, then improved by moving
+/// Returns the positions of the parts: first along the Fiedler vector of their graph, then improved by moving
 /// single parts as long as that shortens edges. Parts without borders come last.
 std::vector<Index> places_of(const std::vector<Border>& borders, Index parts) {
   const ArrangementGraph graph = graph_of(borders, parts);

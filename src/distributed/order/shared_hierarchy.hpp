@@ -43,7 +43,7 @@ class SharedHierarchy {
   [[nodiscard]] const std::vector<SharedLevel>& levels() const noexcept { return levels_; }
   [[nodiscard]] const Communicator& communicator() const noexcept { return communicator_; }
 
-  /// As `Hierarchy::cycle`, for the own rows.
+  /// As `Hierarchy::cycle`, for this rank's rows.
   template <int M>
   void cycle(std::size_t level, const VectorBlock<M>& b, VectorBlock<M>& x);
 

@@ -121,7 +121,7 @@ struct Parents {
   int section = 0;
   std::size_t columns = 2;              ///< values of an element: 2, or 4 with the numbers of faces
   std::vector<Index> rows = {};         ///< the cell of each row; in a section of polygons, the polygon
-  std::vector<Index> cells = {};        ///< the two columns of parents, one after the other; −1: no parent
+  std::vector<Index> cells = {};        ///< the first column of parents, then the second; −1: no parent
   std::vector<std::int64_t> rest = {};  ///< the values of the other columns, column by column
   bool of_polygons = false;
   bool from_one = false;  ///< parents are counted from 1, not by the element numbers of their section
@@ -141,7 +141,7 @@ struct Field {
     parents
   };
   Role role = Role::values;
-  int place = 0;           ///< index of the zone, the section, the list or the parents
+  int place = 0;           ///< index of the zone, section, list or parents, by role
   int axis = 0;            ///< axis of a coordinate
   std::string type = {};   ///< type of values and coordinates in the file
   std::string array = {};  ///< name of the mesh's array

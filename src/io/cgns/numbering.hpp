@@ -12,9 +12,9 @@ namespace meshorder::cgns {
 /// The vertices, polygons and cells of a file in the present order of the mesh, and their numbers.
 ///
 /// Polygons that are cells have the order of their cells. The others lie between two cells: if the polyhedra
-/// kept their order, these polygons keep theirs, else they are sorted by the lower, then by the higher cell.
-/// Each position in a section keeps its kind of polygon: a cell, or a polygon between two cells. Polygons are
-/// left out if they are not cells and have no cell on either side.
+/// kept their order, these polygons keep their order, else they are sorted by the lower, then the higher
+/// cell. Each position in a section keeps its kind of polygon: a cell, or a polygon between two cells.
+/// Polygons are left out if they are not cells and have no cell on either side.
 ///
 /// The sections keep their numbers if all of them keep their sizes, else each zone is numbered from 1 on.
 class Numbering {

@@ -276,7 +276,7 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
   return type->number <= kLastOfSecondOrder || own != nullptr;
 }
 
-/// Returns the places of cells in the file: cells of lower dimensions, the boundaries, follow the others.
+/// Returns the positions of cells in the file: cells of lower dimensions, the boundaries, follow the others.
 Permutation places(const Mesh& mesh, std::vector<Index>& blocks) {
   return places_by_division(divide_cells(mesh, {.sets = true}), blocks);
 }

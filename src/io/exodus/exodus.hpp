@@ -71,7 +71,7 @@ struct Series {
   std::string name;
   NcType type = kDouble;
   std::vector<std::string> arrays = {};  ///< arrays of the mesh, one for each step; empty without values
-  // for element variables an entry for each block; for others one entry
+  // both have an entry for each block for element variables, else one entry
   std::vector<bool> present = {};   ///< whether the file's table of variables marks values
   std::vector<bool> declared = {};  ///< whether the file has a netCDF variable, even without values
 };
@@ -170,7 +170,7 @@ struct ExodusMetadata final : FormatMetadata {
   bool has_node_numbers = false;   ///< the file has node_num_map, even if its numbers are 1, 2, …
   bool has_element_numbers = false;
   /// Name of the file if it is a piece of a decomposed mesh, whose communication maps have been left out;
-  /// else empty.
+  /// otherwise empty.
   std::string piece;
   bool steps_unlimited = true;
   std::size_t steps = 0;

@@ -108,8 +108,8 @@ class HeaderReader {
     }
   }
 
-  /// Returns the number of bytes of a variable, or of one of its records if it has records. Throws InputError
-  /// if the file has fewer bytes.
+  /// Returns the number of bytes of a variable, or of one record if the variable has records. Throws
+  /// InputError if the file has fewer bytes.
   std::uint64_t bytes_of(const std::string& name, const std::vector<std::uint64_t>& places,
                          std::uint64_t width) {
     std::uint64_t bytes = width;

@@ -403,7 +403,7 @@ void NcOutput::check(int status, const std::string& what) const {
 }
 
 void NcOutput::put_attribute(int variable, const Attribute& attribute, const std::string& of) const {
-  if (attribute.name == "_NCProperties") return;  // netCDF writes it itself
+  if (attribute.name == "_NCProperties") return;  // netCDF writes this attribute
   if (attribute.type == kChar) {
     check(nc_put_att_text(id_, variable, attribute.name.c_str(), attribute.count, attribute.bytes.data()),
           of);

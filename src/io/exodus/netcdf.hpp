@@ -69,7 +69,7 @@ struct Variable {
   int id;
   std::string name;
   NcType type;
-  std::vector<int> dimensions;  ///< places in NcInput::dimensions
+  std::vector<int> dimensions;  ///< indices in NcInput::dimensions
 };
 
 /// How values are stored.
@@ -191,7 +191,7 @@ class NcSink {
   int variable_;
 };
 
-/// A file that already exists. The caller puts it in place once it is written.
+/// A file that already exists. The caller moves the file to its final path once it is written.
 struct UnfinishedFile {
   std::filesystem::path path;
   std::string name;  ///< name for messages

@@ -241,7 +241,7 @@ void read_cells(Reading& reading) {
   if (!mesh.cell_blocks.empty()) mesh.cell_blocks.insert(mesh.cell_blocks.begin(), 0);
 }
 
-/// Values of elements of some blocks, one block after another.
+/// Values of the elements of some blocks, block by block.
 struct ValuesOfBlocks {
   std::vector<double> values;
   std::vector<std::size_t> blocks;  ///< blocks of the values; all of them have elements

@@ -33,7 +33,7 @@ class SparseRows {
   }
 
  private:
-  std::vector<std::pair<Index, Index>> rows_;  // place, row
+  std::vector<std::pair<Index, Index>> rows_;  // vertex or cell, row
   bool is_dense_ = false;
 };
 

@@ -188,7 +188,7 @@ struct SetPlan {
   const SetRecord* record = nullptr;
   std::vector<std::int32_t> members = {};  ///< numbers of nodes or elements, from 1
   std::vector<std::int32_t> sides = {};    ///< side sets: the side of each member, from 1
-  std::vector<Index> ranks = {};           ///< place of each side among the sides of its element in the set
+  std::vector<Index> ranks = {};           ///< rank of each side among the sides of its element in the set
   const DataArray* factors = nullptr;
   std::vector<int> factor_counts = {};  ///< side sets: number of factors of each side; empty if all are 1
   int factor_width = 1;                 ///< side sets: components of the array for one side

@@ -97,8 +97,8 @@ void read_families_of(Reading& reading, Association association) {
   }
 }
 
-/// A family and groups that vertices or cells belong to, stored as a chain with one group in each link: an
-/// item may be in thousands of groups.
+/// The family and the groups of some vertices or cells. The groups are a chain with one group in each link: a
+/// vertex or cell may be in thousands of groups.
 struct Combination {
   std::int64_t family;
   std::size_t without_last;       ///< index of the combination without its last group

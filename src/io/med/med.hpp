@@ -154,7 +154,7 @@ struct Reading {
   /// Throws InputError for a fault at a group or a dataset.
   [[noreturn]] void fail(const std::string& path, const std::string& what,
                          const std::string& remedy = "the file may be damaged") const;
-  /// Adds an array under a name that no other array has, its rows in the order of their vertices or cells.
+  /// Adds an array under a name that no other array has. Sorts its rows by their vertices or cells.
   /// Returns that name.
   std::string add_array(DataArray array);
   /// Marks a dataset that the writer writes.

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-// Types of cells, the order of their nodes, and their places in a file.
+// Types of cells, the order of their nodes, and their groups in a file.
 
 namespace meshorder::med {
 namespace {

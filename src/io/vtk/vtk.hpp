@@ -95,7 +95,7 @@ inline constexpr std::string_view kPoints = "POINTS";
 inline constexpr std::array<std::string_view, 4> kCompressors{
     "", "vtkZLibDataCompressor", "vtkLZ4DataCompressor", "vtkLZMADataCompressor"};
 
-/// An array and its role. If a legacy file has several arrays of one role, the first counts.
+/// An array and its role. If a legacy file has several arrays of one role, the first has it.
 struct ArrayRole {
   Role role;
   Association association;
@@ -152,8 +152,8 @@ const ArrayFacts* find_facts(const VtkMetadata& metadata, std::optional<Associat
 
 // ---- cells
 
-/// The cell array of VTK's cell types, kept if shape and number of vertices do not determine them: a Lagrange
-/// tetrahedron of 10 nodes is not a quadratic one.
+/// Name of the array of VTK's cell types. Kept if shape and number of vertices do not determine them: a
+/// Lagrange tetrahedron of 10 nodes is not a quadratic one.
 inline constexpr std::string_view kCellTypes = "vtk:type";
 
 /// Cells as in VTK's files: type numbers of vtkCellType.h; cell c has the vertices from `offsets[c]` on.
@@ -226,8 +226,8 @@ Mesh read_vtu(const FilePath& path, Notes& notes);
 
 // ---- writing
 
-/// The array "set:NAME" has the membership in the set NAME: 1 for each member if the members ascend, else the
-/// rank of each member (from 1), which keeps their order.
+/// Prefix of names of arrays that hold sets. "set:NAME" marks the members of the set NAME: by 1 if the
+/// members ascend, else by their ranks from 1, to keep their order.
 inline constexpr std::string_view kSetPrefix = "set:";
 
 /// Returns the array "set:NAME" of a set. `count` is the number of all vertices or cells.

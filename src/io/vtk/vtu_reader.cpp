@@ -512,13 +512,13 @@ class VtuReader {
   Notes& notes_;
   const VtuDocument* file_ = nullptr;          ///< the file that is being read
   int version_ = 0;                            ///< version of the first file that is not empty, times ten
-  std::map<std::string, std::size_t> fields_;  ///< places of the fields, by name
+  std::map<std::string, std::size_t> fields_;  ///< indices of the fields, by name
   bool is_first_ = true;                       ///< whether the file that is being read is the first
   int pieces_ = 0;                             ///< number of pieces that are not empty
   Mesh mesh_;
   std::shared_ptr<VtkMetadata> metadata_ = std::make_shared<VtkMetadata>();
   std::vector<DataArray> arrays_;
-  std::map<std::pair<Association, std::string>, std::size_t> places_;  // places of arrays
+  std::map<std::pair<Association, std::string>, std::size_t> places_;  // indices in `arrays_`, by name
   FileCells cells_;
   const VtuElement* types_ = nullptr;
 };

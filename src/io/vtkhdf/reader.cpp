@@ -78,7 +78,7 @@ class VtkHdfReader {
     return {file_.name(), fmt::format("the dataset '{}' {}", path, what), std::string(remedy)};
   }
 
-  // ---- datasets by their places
+  // ---- positions of datasets in the file
 
   /// Adds a dataset as a part of the file; returns false if the bytes of its values cannot be read directly.
   bool add(FilePart part, const std::string& path, const std::string& name) {

@@ -64,7 +64,7 @@ class DataReader {
   /// Returns where the values of a DataItem are; follows references. Throws if it does not understand the
   /// DataItem.
   [[nodiscard]] DataPlace place_of(pugi::xml_node item);
-  /// Returns the values, as many as the shape of the place says.
+  /// Returns the values of a place, as many as its shape says.
   [[nodiscard]] Values read(const DataPlace& place);
   /// Returns whole numbers as indices. A number out of range becomes the nearest 32-bit limit, which is not
   /// an index.

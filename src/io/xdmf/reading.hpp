@@ -18,7 +18,7 @@
 
 namespace meshorder::xdmf {
 
-/// A uniform Grid and its place in a series of time steps.
+/// A uniform Grid and its step in a series of time steps.
 struct GridElement {
   pugi::xml_node element;
   int series = -1;  ///< number of its temporal collection; −1: not in such a collection
@@ -75,7 +75,7 @@ class TopologyReader {
   int part_of(const GridElement& grid, pugi::xml_node topology, vtk::FileCells piece);
 
   Reading& reading_;
-  std::map<std::string, std::size_t> known_topologies_;  ///< places of fields in the layout, by key
+  std::map<std::string, std::size_t> known_topologies_;  ///< indices of fields in the layout, by key
   std::map<int, int> series_parts_;
 };
 
@@ -106,7 +106,7 @@ class ArrayReader {
     std::vector<bool> has_row;  ///< whether each cell has a row; empty before rows are appended
   };
 
-  /// Adds an array under a free name, its own name if possible; returns the name.
+  /// Adds an array under its name or, if that is taken, under a free name; returns the name.
   std::string add_growing(DataArray array);
   [[nodiscard]] std::string name_of(pugi::xml_node element) const;
   void read_of_grid(pugi::xml_node item, const std::string& name);
@@ -125,9 +125,9 @@ class ArrayReader {
   std::map<std::pair<Association, std::string>, std::size_t> place_of_array_;
   std::vector<Pending> pending_;
   std::vector<bool> labelled_;  ///< whether each cell has a label
-  /// Places in `pending_`, by key; nullopt for arrays without values.
+  /// Indices in `pending_`, by key; nullopt for arrays without values.
   std::map<std::string, std::optional<std::size_t>> known_arrays_;
-  std::map<std::string, std::size_t> known_sets_;  ///< places of fields in the layout, by key
+  std::map<std::string, std::size_t> known_sets_;  ///< indices of fields in the layout, by key
 };
 
 }  // namespace meshorder::xdmf

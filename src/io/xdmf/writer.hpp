@@ -114,11 +114,11 @@ class Writer {
   /// has exactly these values. Notes rows that the array lacks.
   std::optional<Values> values_of(const DataArray& array, Association association, int part);
 
-  // what the layout has no place for: attribute_writer.cpp
+  // data that the layout has no field for: attribute_writer.cpp
   /// Returns the array of marks of the set that "set:NAME" names; nullopt if there is no such set.
   [[nodiscard]] std::optional<DataArray> marks_named(const std::string& name, Association association) const;
   void add_others();
-  /// Returns the sets that have a place in the layout.
+  /// Returns the sets that the layout has a field for.
   [[nodiscard]] std::set<std::pair<Association, std::string>> placed_sets() const;
   void add_ids(const std::vector<std::int64_t>& ids, const char* name, Association association);
   void add_array(const DataArray& array);

@@ -109,8 +109,8 @@ int below_of(std::string_view grid);
 /// Returns the cells of each part, in the order of the file.
 std::vector<std::vector<Index>> cells_of_parts(const Mesh& mesh, const XdmfLayout& layout);
 
-/// Returns the places of the cells in a file of `layout_of`, by dimension, highest first. `blocks` receives
-/// the first cell of each dimension.
+/// Returns the positions of the cells in a file of `layout_of`, by dimension, highest first. `blocks`
+/// receives the first cell of each dimension.
 Permutation places(const Mesh& mesh, std::vector<Index>& blocks);
 
 }  // namespace meshorder::xdmf
