@@ -22,7 +22,7 @@ namespace meshorder::distributed {
 struct SliceFile {
   std::string path;  ///< temporary path, until it is complete
   std::string name;  ///< final name, also in messages
-  // names of the HDF5 file that belongs to an .xdmf file, as above
+  // path and name, as above, of the HDF5 file that belongs to an .xdmf file; else empty
   std::string data;
   std::string name_of_data;
 };

@@ -136,7 +136,7 @@ class PartGrid {
     return ranks;
   }
 
-  /// Lists the arrays in the sequence of a .vtu file.
+  /// Lists the arrays in the sequence in which a .vtu file has them.
   void list_arrays() {
     using Source = Array::Source;
     const Mesh& mesh = moved_.part().mesh;

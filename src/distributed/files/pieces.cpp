@@ -313,7 +313,7 @@ PiecesReport write_pieces_to_vtkhdf(const Communicator& communicator, const Grid
     partitions.push_back(
         {std::ssize(piece.vertices), std::ssize(piece.cells), std::ssize(piece.cell_vertices.entries)});
   }
-  // in the order of the parts, because ranks have ascending ranges of parts
+  // rank order is the order of the parts, because ranks have ascending ranges of parts
   partitions = communicator.gathered_at_root(partitions);
   const std::vector<PieceArray> arrays = arrays_in_vtkhdf(schema, partitions);
   PiecesReport report = report_on(communicator, own.pieces());

@@ -17,7 +17,7 @@ namespace meshorder::distributed {
 /// The quantity that is balanced among the parts.
 enum class Balance : std::uint8_t {
   vertices,
-  cells,  ///< elements; the weight of an element is divided equally among its vertices
+  cells,  ///< each element divides its weight equally among its vertices
 };
 
 }  // namespace meshorder::distributed

@@ -41,7 +41,7 @@ class Stages {
   Stopwatch stopwatch_;
 };
 
-/// Returns the elements of a slice, or the pieces of their shapes; the vertices of each become neighbours.
+/// Returns the elements of a slice; an element may be divided into pieces, whose vertices become neighbours.
 Rows elements_of(const Communicator& communicator, const MeshSlice& slice) {
   const std::vector<char> is_element = are_elements(communicator, slice.shapes);
   return communicator.together([&] {
@@ -140,8 +140,8 @@ void check_one_order(const DistributedOptions& options) {
     throw InvalidArgument("the partition 'order' leaves interfaces at their places in the order" + remedy);
 }
 
-/// Throws InvalidArgument for more than a million parts if these are more than the vertices: tables of parts
-/// take memory.
+/// Throws InvalidArgument for more than a million parts if there are fewer vertices than parts: tables of
+/// parts take memory.
 void check_parts(Index parts, GlobalIndex vertices) {
   constexpr Index kOfAnyMesh = 1'000'000;
   if (parts <= kOfAnyMesh || parts <= vertices) return;

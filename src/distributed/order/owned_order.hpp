@@ -18,7 +18,7 @@ struct OwnedMesh {
   Rows cells;                 ///< numbers of the vertices of this rank's elements
 };
 
-/// The order of a rank's own vertices and elements.
+/// The order of the vertices that a rank owns and of its elements.
 struct OwnedOrder {
   std::vector<GlobalIndex> new_numbers;  ///< new number of each vertex of this rank, within the rank's range
   std::vector<GlobalIndex> cells;        ///< indices of this rank's elements, sorted in their new order

@@ -17,7 +17,7 @@
 // Data Format software library, "ADF file layout" (NASA, https://cgns.github.io/CGNS_docs_current/adf/).
 // Numbers are hexadecimal digits. A pointer has 8 digits for a block of 4,096 bytes and 4 for a byte in the
 // block. In files of version B…, which libcgns writes if it is configured for 64 bits, pointers and
-// dimensions are binary numbers: a byte in place of each digit (ADF_internals.c of libcgns).
+// dimensions are binary numbers, with a byte for each digit (ADF_internals.c of libcgns).
 
 namespace meshorder::cgns {
 namespace {

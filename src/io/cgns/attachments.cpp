@@ -361,8 +361,7 @@ class AttachmentReader {
   }
 
   /// Returns the number to add to the parents of polygons to get element numbers: 0 if the parents are
-  /// element numbers; if they count the polyhedra from 1, the first number of the section of polyhedra, less
-  /// 1.
+  /// element numbers; if they count the polyhedra from 1, the number before that of the first polyhedron.
   [[nodiscard]] std::int64_t shift_of_parents(std::span<const std::int64_t> numbers,
                                               const std::string& path) {
     const auto wrong = std::find_if(numbers.begin(), numbers.end(), [&](std::int64_t number) {

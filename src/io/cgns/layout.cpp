@@ -121,7 +121,7 @@ class MetadataMaker {
     metadata_->has_labels =
         labels.any() && (division.by_labels || std::all_of(labels.values.begin(), labels.values.end(),
                                                            [](std::int64_t label) { return label == 0; }));
-    std::vector<const CellPart*> keys;  // cells of each section
+    std::vector<const CellPart*> keys;  // type and label of each section
     metadata_->section_of_cell.reserve(mesh_.cells.shapes.size());
     for (Index c = 0; c < mesh_.cell_count(); ++c) {
       const CellPart& key = division.keys[division.key_of_cell[c]];
@@ -179,7 +179,7 @@ class MetadataMaker {
 
 /// Returns the type in which new values are written.
 std::string type_of_values(const Values& values) {
-  // by the alternatives of Values
+  // types by the alternatives of Values
   constexpr std::array kTypes{"R8", "R4", "I4", "I4", "I4", "I4", "I4", "I8", "I8", "I8"};
   return kTypes.at(values.index());
 }

@@ -70,7 +70,7 @@ int nodes_of_side(Shape shape, int nodes, int side, int faces);
 struct Series {
   std::string name;
   NcType type = kDouble;
-  std::vector<std::string> arrays = {};  ///< arrays of the mesh, one for each step; empty without values
+  std::vector<std::string> arrays = {};  ///< the mesh's array of each step; empty if there are no values
   // both have an entry for each block for element variables, else one entry
   std::vector<bool> present = {};   ///< whether the file's table of variables marks values
   std::vector<bool> declared = {};  ///< whether the file has a netCDF variable, even without values

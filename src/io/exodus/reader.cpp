@@ -202,7 +202,7 @@ void read_elements(Reading& reading, const Variable& connect, std::size_t b) {
   for (std::size_t e = 0; e < elements; ++e) {
     Index* const row = cells.vertices.data() + begin + e * nodes;
     for (std::size_t k = 0; k < nodes; ++k) {
-      // as unsigned numbers, numbers below 1 become large
+      // numbers below 1 become large, as the type is unsigned
       const std::uint32_t place = static_cast<std::uint32_t>(row[k]) - 1;
       if (place >= count) {
         file.fail(fmt::format("{}, element {}: node {} does not exist", connect.name, first + e + 1, row[k]),
@@ -409,7 +409,7 @@ void read_nodal_attributes(Reading& reading) {
   }
 }
 
-/// Returns the part to read of a variable of integers with one for each node or element of the whole mesh.
+/// Reads integers of the reading's range; the variable has one for each node or element of the whole mesh.
 std::vector<std::int64_t> numbers_of(const Reading& reading, const Variable& variable, Association of) {
   reading.require_shape(variable, {static_cast<std::size_t>(reading.count(of))});
   const auto [first, count] = reading.rows(of);

@@ -401,7 +401,7 @@ void read_nodal(Reading& reading) {
     } else if (variable != nullptr) {
       const std::vector<std::size_t> shape = file.shape(*variable);
       std::vector<std::size_t> expected{metadata.steps, nodes};
-      is_vector = shape.size() == 3;  // as meshio writes them
+      is_vector = shape.size() == 3;  // meshio writes such vectors
       if (is_vector) {
         for (auto* const list : {&expected, &counts}) list->push_back(shape[2]);
         starts.push_back(0);

@@ -205,7 +205,7 @@ std::vector<Number> values_of_members(const SetPlan& plan, const DataArray& arra
   return result;
 }
 
-/// Declares the sets of one kind.
+/// Declares the dimensions and variables of the sets of one kind.
 class FamilyWriter {
  public:
   FamilyWriter(Writing& writing, std::size_t kind, const std::vector<SetPlan>& plans)

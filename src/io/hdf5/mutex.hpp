@@ -8,8 +8,7 @@ namespace meshorder::hdf5 {
 
 using LibraryLock = std::unique_lock<std::recursive_mutex>;
 
-/// Function that the first thread calls once, just before it enters the library. Set it before any thread
-/// does so.
+/// Function that the first thread calls once, just before entering the library. Set it before that.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): as the library has its state
 inline void (*at_first_entry)() = nullptr;
 

@@ -15,7 +15,7 @@ std::array<hid_t, 10> native_types() {
 }
 
 std::size_t alternative_of(hid_t type) {
-  // no other types: the library does not check their bit fields, which a damaged file may place anywhere
+  // only these: the library does not check bit fields of other types, which a damaged file may put anywhere
   constexpr bool kIsBig = std::endian::native == std::endian::big;
   const std::array<hid_t, 10> known = native_types();
   const auto is_other_order_of = [&](hid_t native) {

@@ -35,7 +35,7 @@ std::string_view system_words(std::string_view cause) {
   return cause.substr(0, cause.find('\''));
 }
 
-/// Copies the beginning of a text: the part that fits before a zero byte.
+/// Copies as much of a text as fits before a final zero byte.
 template <std::size_t Size>
 void keep(std::string_view text, std::array<char, Size>& into) {
   into = {};

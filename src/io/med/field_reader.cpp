@@ -59,7 +59,7 @@ class FieldReader {
     gathered_.clear();
     suffix_ = field_.steps.size() > 1 ? fmt::format(" step {}", step + 1) : "";
     const std::string path = field_.path + "/" + field_.steps[step];
-    // in the order of the cells
+    // read types in the order of the cells
     if (reading_.file.has(path + "/NOE")) read_support(path + "/NOE", nullptr, false);
     for (const GeometryType& type : geometry_types()) {
       for (const std::string_view prefix : {"MAI.", "NOE."}) {

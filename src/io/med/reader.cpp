@@ -204,7 +204,7 @@ void read_cells(Reading& reading, const GeometryType& type) {
     const Index* const column = numbers.data() + k * rows;
     Index* const target = cells.vertices.data() + begin + k;
     for (std::size_t c = 0; c < rows; ++c) {
-      // as unsigned numbers, numbers below 1 become large
+      // numbers below 1 become large, as the type is unsigned
       const std::uint32_t place = static_cast<std::uint32_t>(column[c]) - 1;
       if (place >= last) {
         reading.fail(path, fmt::format("names node {} in cell {}, which does not exist", column[c], c + 1),
@@ -386,7 +386,7 @@ void read_items(Reading& reading) {
   vertices.read(nullptr);
   vertices.finish();
   ItemReader cells(reading, Association::cells);
-  // in the order of the cells
+  // read types in the order of the cells
   for (const GeometryType& type : geometry_types()) cells.read(&type);
   cells.finish();
 }

@@ -52,7 +52,7 @@ std::string entity(std::string_view name) {
       std::from_chars(digits.data(), digits.data() + digits.size(), code, hexadecimal ? 16 : 10);
   if (digits.empty() || error != std::errc{} || end != digits.data() + digits.size() || code > 0x10FFFF)
     return {};
-  // as UTF-8
+  // encode the character in UTF-8
   if (code < 0x80) return {static_cast<char>(code)};
   std::string bytes;
   const int following = code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;

@@ -214,8 +214,8 @@ class XdmfReader {
     return find_values(item, Field::Role::data, on_vertices ? Association::vertices : Association::cells, 0);
   }
 
-  /// Adds the dataset of a DataItem as rows of `components` numbers; 0: as many as follow from the number of
-  /// points or cells. The first call must be for the points, the second for the topology; other Grids must
+  /// Adds the dataset of a DataItem as rows of `components` numbers; 0: the number of values per
+  /// point or cell. The first call must be for the points, the second for the topology; other Grids must
   /// name the same datasets. Returns false if the bytes of the dataset cannot be read directly.
   bool find_values(pugi::xml_node item, Field::Role role, Association association, Index components) {
     constexpr std::size_t kLastReal = 1;

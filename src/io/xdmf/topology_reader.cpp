@@ -103,7 +103,7 @@ bool read_mixed(const std::vector<Index>& numbers, std::int64_t claimed, bool co
     const TopologyType* const type = topology_type(numbers[i++]);
     if (type == nullptr) return false;
     std::int64_t nodes = type->nodes;
-    if (nodes == 0 && type->number == kPolyvertex && !counted) nodes = 1;  // as meshio writes them
+    if (nodes == 0 && type->number == kPolyvertex && !counted) nodes = 1;  // as meshio writes these cells
     if (nodes == 0) {
       if (i == numbers.size()) return false;
       nodes = numbers[i++];
