@@ -47,7 +47,7 @@ struct SharedError : Error {
 template <class T>
 struct Parcels {
   std::vector<T> values;
-  std::vector<Offset> starts;  ///< ranks + 1, from 0
+  std::vector<Offset> starts;  ///< ranks + 1 entries, ascending from 0
 
   [[nodiscard]] std::span<const T> operator[](int rank) const {
     const auto r = static_cast<std::size_t>(rank);
@@ -102,7 +102,7 @@ class Communicator {
   /// parcel may have more than 2 GiB. O(values + ranks).
   ///
   /// @param values  values[starts[r]] … values[starts[r + 1] − 1] go to rank r
-  /// @param starts  ranks + 1, ascending
+  /// @param starts  ranks + 1 entries, ascending
   /// @throws SharedError if a rank lacks memory for the values that it receives
   template <class T>
   [[nodiscard]] Parcels<T> exchange(std::span<const T> values, const std::vector<Offset>& starts) const {
@@ -131,7 +131,7 @@ class Communicator {
   /// Throws as `exchange`.
   ///
   /// @param at_root  values of the root; ignored on other ranks
-  /// @param starts   ranks + 1, ascending; only the size is used on other ranks
+  /// @param starts   ranks + 1 entries, ascending; only the size is used on other ranks
   template <class T>
   [[nodiscard]] std::vector<T> scattered_from_root(const std::vector<T>& at_root,
                                                    const std::vector<Offset>& starts) const {

@@ -11,7 +11,7 @@ namespace meshorder::distributed {
 
 /// Rows of 64-bit integers. An entry may also hold the bits of a real number.
 struct Rows {
-  std::vector<Offset> offsets{0};  ///< rows + 1, ascending
+  std::vector<Offset> offsets{0};  ///< rows + 1 entries, ascending
   std::vector<GlobalIndex> entries;
 
   [[nodiscard]] Offset size() const noexcept { return static_cast<Offset>(offsets.size()) - 1; }
@@ -25,7 +25,7 @@ struct Rows {
   bool operator==(const Rows&) const = default;
 };
 
-/// A row on its way to a rank.
+/// A row to be sent to a rank.
 struct Dispatch {
   int to;
   Offset row;

@@ -68,7 +68,7 @@ std::optional<FileHead> read_vtkhdf_head(const std::string& path) {
     if (part.role == FilePart::Role::data)
       rows.push_back(blank_row(layout.names[part.number], part.association, part.type, part.components));
   }
-  Notes ignored;  // on names that XML cannot hold
+  Notes ignored;  // notes on names that XML cannot hold
   std::string mold = mold_of(std::move(rows), grid->metadata, true, ignored);
   std::optional<FileHead> head = head_of(FileFacts::Kind::vtkhdf, std::move(grid->layout), path);
   if (head) head->mold = std::move(mold);

@@ -51,7 +51,8 @@ class MeshParts {
 /// Extracts the parts of a mesh, with the arrays, sets and ids of their cells and vertices.
 class PartCutter {
  public:
-  /// Both must outlive this object. O(rows of arrays on some vertices or cells + members of sets).
+  /// `mesh` and `parts` must outlive this object. O(rows of arrays on some vertices or cells + members of
+  /// sets).
   PartCutter(const Mesh& mesh, const MeshParts& parts);
 
   /// Returns a part: its vertices and cells in the order of `MeshParts`, without `cell_blocks`, with the

@@ -171,7 +171,7 @@ class PartGrid {
 
   const Communicator& communicator_;
   MovedPart& moved_;
-  std::vector<std::vector<std::int32_t>> set_ranks_;  ///< rank of each member in its set; empty: mark with 1
+  std::vector<std::vector<std::int32_t>> set_ranks_;  ///< each member's position in its set; empty: all 1
   std::vector<Array> arrays_;
   std::vector<std::uint8_t> types_;  ///< VTK cell types
 };

@@ -68,7 +68,7 @@ class MovedPart {
   [[nodiscard]] Cells take_cells() { return std::move(part_.mesh.cells); }
 
  private:
-  /// The vertices or the cells.
+  /// Data of the vertices or of the cells.
   struct Entities {
     Layout layout;
     std::vector<GlobalIndex> places;  ///< new place of each vertex or cell of the part

@@ -52,7 +52,7 @@ bool knows_all(const Mesh& mesh, const ExodusMetadata& metadata) {
   const auto has_array = [&](const std::string& name) {
     return parts.array(name, Association::cells) != nullptr;
   };
-  std::size_t known = 0;  // sets, and blocks with a name
+  std::size_t known = 0;  // number of sets, and of blocks with a name
   for (const BlockRecord& block : metadata.blocks) known += block.in_mesh.empty() ? 0 : 1;
   for (std::size_t kind = 0; kind < metadata.sets.size(); ++kind) {
     for (const SetRecord& record : metadata.sets[kind].sets) {
@@ -90,8 +90,8 @@ void add_integers(ExodusMetadata& metadata, std::string_view name, std::string_v
 
 constexpr std::string_view kFiles = "num_procs_file";
 
-/// Adds communication maps of nodes ("n") or elements ("e"), one for each part that shares some. A map's id
-/// is the number of that part.
+/// Adds communication maps of nodes ("n") or elements ("e"), one for each other part that shares any. A map's
+/// id is the number of that part.
 void add_maps(ExodusMetadata& metadata, const std::string& of,
               const std::map<Index, std::vector<std::int64_t>>& maps) {
   std::vector<std::int64_t> ids;

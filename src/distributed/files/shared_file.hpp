@@ -35,12 +35,12 @@ class SharedFile {
 
   /// Writes `bytes`, of any size on each rank, from byte `at` of the file on. O(bytes).
   ///
-  /// @throws SharedError if a rank cannot, as on a full disk
+  /// @throws SharedError if a rank cannot write, as on a full disk
   void write(Offset at, std::span<const std::byte> bytes) const;
 
   /// Writes buffered bytes and closes the file.
   ///
-  /// @throws SharedError if a rank cannot
+  /// @throws SharedError if a rank cannot write or close it
   void close();
 
  private:

@@ -44,10 +44,10 @@ struct DistributedReport {
   std::vector<GlobalIndex> part_starts;  ///< first new number of each part, then the end of the last part
   std::vector<GlobalIndex> interfaces;   ///< for each part, the number of vertices on its interface
   std::vector<FiedlerComponent>
-      fiedler;  ///< for `Partitioner::order`: all components, largest first; at the root
+      fiedler;  ///< for `Partitioner::order`: reports on all components, largest first; at the root
   GlobalEdgeSpan before;
   GlobalEdgeSpan after;
-  std::vector<std::pair<std::string_view, double>> seconds;  ///< of each stage, in sequence
+  std::vector<std::pair<std::string_view, double>> seconds;  ///< name and time of each stage, in sequence
 };
 
 /// A rank's share of the order of a mesh.

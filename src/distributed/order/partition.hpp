@@ -21,7 +21,7 @@ namespace meshorder::distributed {
 /// Methods of cutting a graph into parts.
 enum class Partitioner : std::uint8_t {
   ptscotch,  ///< few edges between parts; the same parts for the same graph on the same number of ranks
-  hilbert,   ///< ranges of the graph's numbers with equal weights; the same on any number of ranks
+  hilbert,   ///< ranges of the graph's numbers with equal weights; same parts on any number of ranks
   rsb,       ///< recursive spectral bisection, see `bisected`
   order,     ///< equal ranges of one order of the whole graph; parts are not ordered separately
 };

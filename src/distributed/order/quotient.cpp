@@ -12,7 +12,7 @@ namespace meshorder::distributed {
 namespace {
 
 constexpr double kTolerance = 1e-6;  // tolerance of the Fiedler vector, cheap for a graph this small
-constexpr int kPasses = 20;          // most passes over all parts; usually no part moves after a few
+constexpr int kPasses = 20;          // maximum number of passes over all parts; a few usually suffice
 
 /// The number of edges between two parts, a < b.
 struct Border {

@@ -221,8 +221,7 @@ class AttachmentReader {
     }
   }
 
-  /// Reads values for the `count` vertices or cells that the association, the section and the list of `rows`
-  /// give.
+  /// Reads values for `count` vertices or cells: `rows` gives these by its association, section and list.
   void read_values(Node& node, const std::string& solution, const Field& rows, std::size_t count,
                    const std::string& path) {
     Values values = numbers_of(node);

@@ -128,7 +128,7 @@ struct Parents {
   std::string number_type = "I4";
 };
 
-/// The meaning of a node's values, and their place in the mesh.
+/// What the values of a node mean, and where the mesh holds them.
 struct Field {
   enum class Role : std::uint8_t {
     zone_size,
@@ -142,7 +142,7 @@ struct Field {
   };
   Role role = Role::values;
   int place = 0;           ///< index of the zone, section, list or parents, by role
-  int axis = 0;            ///< axis of a coordinate
+  int axis = 0;            ///< axis of a coordinate, from 0
   std::string type = {};   ///< type of values and coordinates in the file
   std::string array = {};  ///< name of the mesh's array
   bool has_left = false;   ///< for values: the array is gone, or no longer fits its fields

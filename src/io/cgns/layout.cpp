@@ -121,7 +121,7 @@ class MetadataMaker {
     metadata_->has_labels =
         labels.any() && (division.by_labels || std::all_of(labels.values.begin(), labels.values.end(),
                                                            [](std::int64_t label) { return label == 0; }));
-    std::vector<const CellPart*> keys;  // type and label of each section
+    std::vector<const CellPart*> keys;  // key of each section
     metadata_->section_of_cell.reserve(mesh_.cells.shapes.size());
     for (Index c = 0; c < mesh_.cell_count(); ++c) {
       const CellPart& key = division.keys[division.key_of_cell[c]];

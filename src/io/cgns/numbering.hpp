@@ -19,8 +19,8 @@ namespace meshorder::cgns {
 /// The sections keep their numbers if all of them keep their sizes, else each zone is numbered from 1 on.
 class Numbering {
  public:
-  /// `metadata` must fit the mesh; its lists and fields may change later. Both must outlive this object.
-  /// O(vertices + cells + polygons · log polygons).
+  /// `metadata` must fit the mesh; its lists and fields may change later. Both arguments must outlive this
+  /// object. O(vertices + cells + polygons · log polygons).
   Numbering(const Mesh& mesh, const CgnsMetadata& metadata);
 
   [[nodiscard]] Index vertex_count(int zone) const;
@@ -70,7 +70,7 @@ class Numbering {
 /// sets that CGNS has no place for.
 void add_missing(const Mesh& mesh, CgnsMetadata& metadata, const Numbering& numbering, Notes& notes);
 
-/// Gives a node that has a field its values, in the present order of the mesh.
+/// Fills in the values of a node that has a field, in the present order of the mesh.
 void fill(Node& node, const Mesh& mesh, const CgnsMetadata& metadata, const Numbering& numbering);
 
 }  // namespace meshorder::cgns

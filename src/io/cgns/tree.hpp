@@ -22,7 +22,7 @@ struct Node {
   std::string name = {};
   std::string label = {};
   std::string type = "MT";                    ///< "MT" (none), "C1", "I4", "I8", "R4", "R8" …
-  std::vector<std::int64_t> dimensions = {};  ///< the first one runs fastest
+  std::vector<std::int64_t> dimensions = {};  ///< the first dimension varies fastest
   std::string bytes = {};                     ///< values in the machine's byte order
   std::vector<Node> children = {};
   int field = -1;  ///< index in `CgnsMetadata::fields` of the field with the values; −1: they are in `bytes`

@@ -139,7 +139,7 @@ bool fits(const DataArray& array, const std::vector<const Field*>& fields, const
                           : std::all_of(array.indices.begin(), array.indices.end(), has_value);
 }
 
-/// Marks the fields of each array that they no longer fit: `has_left` becomes true.
+/// Sets `has_left` in the fields of each array that no longer fits them.
 void release_arrays(const Mesh& mesh, CgnsMetadata& metadata, const Numbering& numbering) {
   std::map<std::pair<Association, std::string>, std::vector<const Field*>> by_array;
   for (const Field& field : metadata.fields) {

@@ -16,7 +16,7 @@
 namespace meshorder::exodus {
 namespace {
 
-/// Returns the division of a mesh into blocks. Sets divide it only if it was read from another format.
+/// Returns the division of a mesh into blocks. Sets divide a mesh only if it was read from another format.
 CellDivision divide(const Mesh& mesh) {
   const ExodusMetadata* const own = own_metadata(mesh);
   if (own == nullptr) return divide_cells(mesh, {.sets = true});

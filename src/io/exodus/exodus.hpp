@@ -43,7 +43,7 @@ inline constexpr std::string_view kLabelProperty = kLabel;
 // ---- elements
 
 /// Returns the shape of elements of a type. The type may be in any case, with or without the number of nodes.
-/// Nothing for unknown types, for types without a fixed number of nodes, and for too few nodes.
+/// Returns nothing for unknown types, for types without a fixed number of nodes, and for too few nodes.
 std::optional<Shape> shape_of(std::string_view type, int nodes, int dimension);
 
 /// Returns the name of the element type for these cells; empty if other programs do not know such a type.
@@ -71,7 +71,7 @@ struct Series {
   std::string name;
   NcType type = kDouble;
   std::vector<std::string> arrays = {};  ///< the mesh's array of each step; empty if there are no values
-  // both have an entry for each block for element variables, else one entry
+  // each has an entry for each block if the variable is of elements, else one entry
   std::vector<bool> present = {};   ///< whether the file's table of variables marks values
   std::vector<bool> declared = {};  ///< whether the file has a netCDF variable, even without values
 };
@@ -132,7 +132,7 @@ struct MapRecord {
 struct SetKind {
   std::string_view word;         ///< used in names of arrays and in messages
   std::string_view count;        ///< name of the dimension that counts the sets
-  std::string_view prefix;       ///< the names of the variables of ids, names and status begin with it
+  std::string_view prefix;       ///< beginning of the names of the variables of ids, names and status
   std::string_view members;      ///< name of the variable of members
   std::string_view size;         ///< name of the dimension that counts the members
   std::string_view factor_size;  ///< name of the dimension that counts the factors
@@ -152,7 +152,7 @@ inline constexpr std::size_t kNodeSets = 0;
 inline constexpr std::size_t kSideSets = 1;
 inline constexpr std::size_t kElementSets = 2;
 
-/// Returns the form of a set's name that is part of names of arrays: "node set NAME".
+/// Returns the name of a set as names of arrays contain it, for example "node set NAME".
 std::string title(const SetKind& kind, std::string_view in_mesh);
 
 /// Data of a file beyond the mesh.

@@ -83,7 +83,7 @@ struct Storage {
 Storage plain_storage(bool large);
 
 /// Throws InputError unless a file begins with a valid header of netCDF-3 and all values lie within `size`
-/// bytes. `first_bytes(n)` returns the first n bytes of the file, or all. O(size of the header).
+/// bytes. `first_bytes(n)` returns the first n bytes, or all bytes of a shorter file. O(size of the header).
 void check_classic_header(const std::string& file, const std::function<std::string(std::size_t)>& first_bytes,
                           std::uint64_t size);
 

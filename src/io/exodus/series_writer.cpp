@@ -19,7 +19,7 @@ namespace {
 /// Vertices or cells whose values are in one netCDF variable.
 struct Target {
   NcSink sink;
-  std::vector<std::size_t> starts;  ///< start of the values in the variable at the first step
+  std::vector<std::size_t> starts;  ///< start indices of the values in the variable, at the first step
   Index first;
   Index count;
 };

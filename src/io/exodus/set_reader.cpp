@@ -196,8 +196,8 @@ class SetReader {
                        "sides are counted from 1");
   }
 
-  /// Reads the entries of a list of nodes or elements, piece by piece. `side_numbers`: their sides, null for
-  /// other sets.
+  /// Reads the entries of a list of nodes or elements, in chunks. `side_numbers`: the sides of a side set,
+  /// null for other sets.
   [[nodiscard]] Entries read_entries(const Variable& variable, const Variable* side_numbers) const {
     const NcInput& file = reading_.file;
     const MeshRange range = reading_.range(kind_.association);

@@ -20,7 +20,7 @@ namespace meshorder::exodus {
 /// The plan for a block of the file.
 struct BlockPlan {
   CellPart cells;
-  const BlockRecord* record = nullptr;  ///< its record, if the file that the mesh came from had the block
+  const BlockRecord* record = nullptr;  ///< record in the file that the mesh came from; null: new block
   std::int64_t id = 0;
   std::string name = {};
 
@@ -175,7 +175,7 @@ void plan_blocks(Planning& planning, bool is_own);
 std::vector<const EntitySet*> name_blocks(Planning& planning);
 
 /// Returns the attributes of a block. A block of the file that the mesh came from keeps the file's
-/// attributes; a new block gets the arrays "attribute NAME" that have a value in it.
+/// attributes; a new block gets the arrays "attribute NAME" that have a value in the block.
 Columns attributes_of(Planning& planning, const BlockPlan& block);
 
 /// Declares the blocks with their elements and attributes. `attributes` has an entry for each block.

@@ -13,8 +13,8 @@
 namespace meshorder::hdf5 {
 namespace {
 
-/// Copies an attribute to another object. Leaves out an attribute that holds references: these name places in
-/// the old file.
+/// Copies an attribute to another object. Leaves out an attribute of references: these are addresses in the
+/// old file.
 void copy_attribute(hid_t from, const char* name, hid_t to) {
   const Handle attribute(H5Aopen(from, name, H5P_DEFAULT), H5Aclose);
   const Handle type(H5Aget_type(attribute.id()), H5Tclose);

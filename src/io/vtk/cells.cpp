@@ -147,7 +147,7 @@ const std::vector<std::uint8_t>* kept_types(const Mesh& mesh) {
   return numbers;
 }
 
-/// Caches default types: a mesh has few.
+/// Caches default types: a mesh has few different ones.
 class DefaultTypes {
  public:
   const CellType* operator()(Shape shape, int vertices) {

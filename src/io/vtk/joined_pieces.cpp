@@ -173,7 +173,7 @@ class PieceJoiner {
     return kept;
   }
 
-  /// Keeps only the cells of these rows.
+  /// Keeps only the cells with these indices.
   void take_cells_of(const std::vector<Index>& rows) {
     const FileCells all = std::move(pieces_.cells);
     FileCells& cells = pieces_.cells = {};

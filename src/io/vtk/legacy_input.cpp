@@ -235,7 +235,7 @@ DataArray LegacyInput::array(const std::string& name, std::optional<Association>
   }
   result.values = values_of_type(type->alternative);
 
-  // tuples begin on the next line; in a binary file at its first byte
+  // tuples begin on the next line; in a binary file at that line's first byte
   const bool text = are_texts(result.values);
   const std::int64_t count = tuples * components;
   if (count > 0 && (binary || text)) scanner.raw_line();

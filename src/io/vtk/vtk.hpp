@@ -188,7 +188,7 @@ bool is_from_vtk(const Mesh& mesh);
 /// are polyhedra here.
 bool holds(const Mesh& mesh, Shape shape, int vertices);
 
-/// Returns whether the mesh has polyhedra with the faces of a file of VTK.
+/// Returns whether the mesh has polyhedra whose faces were read from a file of VTK.
 bool has_polyhedra(const Mesh& mesh);
 
 /// Returns VTK's type number of every cell. `holds` must be true for all cells.

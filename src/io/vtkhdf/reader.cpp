@@ -105,7 +105,7 @@ class VtkHdfReader {
            add({.role = role, .association = association, .components = width, .rows = rows}, path, name);
   }
 
-  /// Adds the arrays on points or cells.
+  /// Adds the arrays on points or cells; returns false if `add` does so.
   bool add_data(Association association) {
     const std::string group = data_group(association);
     read_roles(association);

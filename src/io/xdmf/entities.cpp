@@ -137,7 +137,8 @@ class Expansion {
   /// Reads <!ENTITY NAME "TEXT">; returns its end.
   std::size_t read_entity(std::size_t begin) {
     std::size_t at = skip_blanks(begin + std::string_view("<!ENTITY").size());
-    if (at < text_.size() && text_[at] == '%') return skip_declaration(begin);  // using it is refused
+    if (at < text_.size() && text_[at] == '%')
+      return skip_declaration(begin);  // references to it are refused
     const std::size_t end = end_of_name(text_, at);
     const std::string name(text_.substr(at, end - at));
     at = skip_blanks(end);
