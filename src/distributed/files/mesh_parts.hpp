@@ -51,8 +51,7 @@ class MeshParts {
 /// Extracts the parts of a mesh, with the arrays, sets and ids of their cells and vertices.
 class PartCutter {
  public:
-  /// `mesh` and `parts` must outlive this object. O(rows of arrays on some vertices or cells + members of
-  /// sets).
+  /// The arguments must outlive this object. O(rows of arrays on some vertices or cells + members of sets).
   PartCutter(const Mesh& mesh, const MeshParts& parts);
 
   /// Returns a part: its vertices and cells in the order of `MeshParts`, without `cell_blocks`, with the

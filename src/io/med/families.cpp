@@ -269,9 +269,8 @@ class FamilyWriter {
   std::vector<std::size_t> of_item_;  // the combination of each vertex or cell
   std::deque<std::string> groups_;
   std::map<std::int64_t, std::vector<std::string>> groups_of_;  // groups of each family, by its number
-  std::map<std::vector<std::string>, std::int64_t>
-      number_of_;          // number of the first family with these groups
-  std::int64_t last_ = 0;  // number farthest from 0
+  std::map<std::vector<std::string>, std::int64_t> number_of_;  // first family with these groups
+  std::int64_t last_ = 0;                                       // number farthest from 0
 };
 
 }  // namespace

@@ -30,12 +30,12 @@ constexpr int kLinearWedge = 13;
 constexpr int kPyramid = 14;
 
 // The first triangle of a linear wedge faces outward in VTK up to 9.6 and in VTK's files by Gmsh and meshio.
-// It faces inward in a Mesh, in Gmsh's own files, in Lagrange wedges and in VTK 9.7. This decides faces,
-// normals and volumes. Quadratic wedges are ordered as in a Mesh, also in the files of Gmsh and meshio; VTK
-// 9.1 sees their faces from inside, which the release notes of a later version call a mistake.
+// It faces inward in a Mesh, in Gmsh's own files, in Lagrange wedges and in VTK 9.7. This direction decides
+// faces, normals and volumes. Quadratic wedges are ordered as in a Mesh, also in the files of Gmsh and
+// meshio; VTK 9.1 sees their faces from inside, which the release notes of a later version call a mistake.
 constexpr std::array<std::pair<int, int>, 2> kWedge{{{1, 2}, {4, 5}}};
 
-// in the order in which a type is chosen for a shape and its vertices
+// for a shape and its number of vertices, the first type that fits is chosen
 constexpr std::array kTypes{
     CellType{1, "VTK_VERTEX", Shape::vertex, 1},
     CellType{2, "VTK_POLY_VERTEX", Shape::poly_vertex, -1},

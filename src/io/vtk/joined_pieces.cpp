@@ -57,8 +57,8 @@ class PieceJoiner {
     });
   }
 
-  /// Clears kOfAnotherPiece in vtkGhostType for the rows that stayed; removes the array if that leaves only
-  /// 0.
+  /// Clears kOfAnotherPiece in vtkGhostType for the rows that stayed; removes the array if only zeros
+  /// are left.
   void forget_other_pieces(Association association) {
     bool says_more = false;
     for (DataArray& array : pieces_.arrays) {

@@ -27,7 +27,7 @@ struct TypeName {
   bool is_kept = true;      // whether the array is written under this name again
 };
 
-// names besides kLegacyTypeNames
+// names of types that files may have besides kLegacyTypeNames
 constexpr std::array kOtherTypeNames{TypeName{"signed_char", 2},   TypeName{"long", 8},
                                      TypeName{"unsigned_long", 9}, TypeName{"vtkidtype", 8},
                                      TypeName{"long_long", 8},     TypeName{"unsigned_long_long", 9},

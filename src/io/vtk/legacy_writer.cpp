@@ -389,7 +389,7 @@ class LegacyWriter {
   LegacyLayout layout_;
   OutputFile out_;
   std::map<std::pair<Association, std::string_view>, const ArrayRole*> roles_;  // roles by their arrays
-  bool offsets_ = false;  // cells by their offsets, as from version 5 on
+  bool offsets_ = false;  // whether cells are given by offsets, as since version 5
 };
 
 void write_legacy(const Mesh& mesh, const FilePath& path, Notes& notes) {

@@ -67,7 +67,7 @@ DataArray full_array(const DataArray& array, Index count) {
     copy.values = array.values;
   } else {
     std::vector<Index> rows = rows_by_item(array, count);
-    rows.resize(static_cast<std::size_t>(count), -1);  // without indices, the array has no rows
+    rows.resize(static_cast<std::size_t>(count), -1);  // the table is empty if the array has no rows
     copy.values = rows_of_values(array.values, array.components, rows);
   }
   return copy;

@@ -15,7 +15,7 @@ inline constexpr int kPolyhedron = 42;
 /// The faces of the polyhedra of a mesh, as in legacy files. For each polyhedron: its number of faces, then
 /// for each face its number of corners and the corners.
 struct Polyhedra {
-  std::vector<Offset> starts;  ///< cells + 1: where the numbers of each cell begin; empty for no polyhedra
+  std::vector<Offset> starts;  ///< start of the numbers of each cell, then the end; empty for no polyhedra
   std::vector<Index> numbers;
   bool are_by_face = false;  ///< whether the .vtu file lists faces apart from cells, as VTK does since 9.4
 

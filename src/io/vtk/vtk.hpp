@@ -68,7 +68,7 @@ inline constexpr std::array<std::string_view, 11> kXmlRoles{
 struct LegacyAttribute {
   std::string_view keyword;
   Role role;
-  int components;  ///< required; 0: any
+  int components;  ///< required number of components; 0: any
 };
 
 inline constexpr std::array kLegacyAttributes{
@@ -100,7 +100,7 @@ struct ArrayRole {
   Role role;
   Association association;
   std::string array;
-  std::string lookup_table;  ///< legacy scalars: the name of their table
+  std::string lookup_table;  ///< name of the lookup table of legacy scalars
 };
 
 /// Properties of an array that DataArray does not hold.

@@ -105,7 +105,7 @@ struct Library {
   std::uint64_t greatest_ratio;
 };
 
-/// In the order of VtuEncoding::Compressor.
+/// Libraries in the order of VtuEncoding::Compressor.
 constexpr std::array kLibraries{Library{{}, "", "", 1}, Library{zlib_codec(), "zlib", "MESHORDER_ZLIB", 1100},
                                 Library{lz4_codec(), "LZ4", "MESHORDER_LZ4", 300},
                                 Library{lzma_codec(), "LZMA", "MESHORDER_LZMA", 20000}};

@@ -34,8 +34,8 @@ struct VtuAttribute {
 struct VtuElement {
   std::string name;
   std::vector<VtuAttribute> attributes;
-  std::size_t at = 0;     ///< byte of its <
-  std::size_t end = 0;    ///< byte after its end tag, or after its start tag while open
+  std::size_t at = 0;     ///< position of its < in the file, in bytes
+  std::size_t end = 0;    ///< end of its end tag, or of its start tag while it is parsed
   std::string_view text;  ///< its first text that is not blank, up to the next child or comment
   std::vector<VtuElement> children;
 
@@ -130,7 +130,7 @@ class VtuDocument {
   VtuElement root_;
   VtuEncoding encoding_;
   int version_ = 0;
-  std::optional<std::string_view> appended_;  // all that follows the underscore
+  std::optional<std::string_view> appended_;  // appended data after the underscore
   bool appended_base64_ = false;
 };
 

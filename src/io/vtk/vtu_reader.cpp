@@ -388,7 +388,7 @@ class VtuReader {
     });
   }
 
-  /// Refuses an array of any step but the first, and notes that the time of an only step is left out.
+  /// Refuses an array of any step but the first, and notes that the time of a single step is left out.
   void refuse_time_steps(const VtuElement& array) const {
     const std::string* const step = array.attribute("TimeStep");
     if (step == nullptr) return;

@@ -103,7 +103,7 @@ VtuDocument::Stored VtuDocument::locate(const VtuElement& array) const {
     locate_blocks(array, data, coded, stored);
     return stored;
   }
-  // a word with the number of bytes, then the bytes
+  // the data are a word with the number of bytes, then the bytes
   const std::string head =
       coded ? base64(array, data, header_size()) : std::string(data.substr(0, header_size()));
   if (head.size() < header_size())
@@ -269,7 +269,7 @@ std::vector<std::uint8_t> VtuDocument::bits(const VtuElement& array, std::int64_
 std::vector<std::string> VtuDocument::strings(const VtuElement& array, std::int64_t count) const {
   std::string bytes;
   if (mode(array) == VtuEncoding::Mode::ascii) {
-    // as the numbers of their characters
+    // texts are given by the codes of their characters
     std::string_view text = array.text;
     for (std::string_view word = next_word(text, kXmlBlanks); !word.empty();
          word = next_word(text, kXmlBlanks)) {

@@ -43,7 +43,7 @@ using Numbers =
 
 /// An array of the file: its tag and its numbers; for strings, the codes of their characters.
 struct Array {
-  std::string tag;  // without format and end
+  std::string tag;  // tag without the format and the end
   Numbers numbers;
   std::string information;
   std::vector<std::string> compressed;  // blocks of appended arrays

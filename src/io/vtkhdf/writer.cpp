@@ -25,7 +25,7 @@
 namespace meshorder::vtkhdf {
 namespace {
 
-/// The bytes of a file without datasets.
+/// Returns the bytes of a file without datasets.
 std::string empty_file() {
   hdf5::File file = hdf5::File::in_memory({}, "");
   const std::string root(kRoot);
@@ -80,7 +80,7 @@ class VtkHdfWriter {
     const Cells& cells = from_.cells();
     write_counts(file_, {{from_.mesh.vertex_count(), from_.mesh.cell_count(), cells.offsets.back()}});
     write_points();
-    // 64 bits and one type for both, as in the files of VTK's own writer
+    // both have 64 bits and the same type, as in the files of VTK's own writer
     put("Offsets", std::vector<std::int64_t>(cells.offsets.begin(), cells.offsets.end()));
     put("Connectivity", std::vector<std::int64_t>(cells.vertices.begin(), cells.vertices.end()));
     put("Types", from_.types);

@@ -20,7 +20,7 @@ namespace meshorder::xdmf {
 namespace {
 
 constexpr std::size_t kMostAdded = std::size_t{16} << 20U;  // bytes, by all entities together
-constexpr int kDeepest = 32;                                // entities in entities
+constexpr int kDeepest = 32;                                // levels of entities in entities
 constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::array<std::string_view, 5> kPredefined{"amp", "apos", "gt", "lt", "quot"};
 
@@ -137,8 +137,7 @@ class Expansion {
   /// Reads <!ENTITY NAME "TEXT">; returns its end.
   std::size_t read_entity(std::size_t begin) {
     std::size_t at = skip_blanks(begin + std::string_view("<!ENTITY").size());
-    if (at < text_.size() && text_[at] == '%')
-      return skip_declaration(begin);  // references to it are refused
+    if (at < text_.size() && text_[at] == '%') return skip_declaration(begin);  // its use is refused
     const std::size_t end = end_of_name(text_, at);
     const std::string name(text_.substr(at, end - at));
     at = skip_blanks(end);

@@ -8,7 +8,7 @@
 namespace meshorder::xdmf {
 namespace {
 
-// in the order in which a type is chosen for a shape
+// for each shape, the first type that fits is chosen
 constexpr std::array kTopologyTypes{
     TopologyType{"Polyvertex", kPolyvertex, 2, Shape::vertex, 0},
     TopologyType{"Polyline", kPolyline, 4, Shape::line, 0},

@@ -64,8 +64,8 @@ class Writer {
   static void set_shape(pugi::xml_node item, const std::vector<std::uint64_t>& shape);
   /// Returns the shape of values at a place in rows of `components`; the old shape if it fits.
   std::vector<std::uint64_t> shape_at(const DataPlace& place, std::size_t count, std::size_t components);
-  /// Returns whether another field has written other values to the dataset of a place, for example an array
-  /// on cells if this one is on vertices. From the first call on, the dataset counts as written.
+  /// Returns whether another field has written other values to the dataset of a place: an array on cells and
+  /// one on vertices may share a dataset. From the first call on, the dataset counts as written.
   bool is_taken(const DataPlace& place, const Values& values);
   /// Sets the shape and the number type of a DataItem for values in rows of `components`; returns the
   /// shape.

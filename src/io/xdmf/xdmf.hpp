@@ -78,18 +78,18 @@ struct Field {
 /// Data of XDMF's files beyond the mesh.
 struct XdmfLayout final : FormatMetadata {
   std::string stem;                         ///< stem of the name of the .xdmf file
-  std::string xml;                          ///< without values
+  std::string xml;                          ///< XML of the file, without values
   std::map<std::string, std::string> hdf5;  ///< bytes of files without values, by their names in the XML
   std::vector<TopologyPart> parts;
   std::vector<Field> fields;
   std::vector<std::string> words;  ///< see `contents`
   bool inward_wedges = false;      ///< linear wedges in the order of VTK 9.7
-  bool is_made = false;            ///< whether `layout_of` made it
+  bool is_made = false;            ///< whether `layout_of` made this layout
 
   [[nodiscard]] std::vector<std::string> contents() const override { return words; }
 };
 
-/// Returns the maker of the files of a layout that has all values in one HDF5 file.
+/// Returns an object that makes the files of a layout whose values are all in one HDF5 file.
 std::shared_ptr<const SplitFile> with_data(std::shared_ptr<const XdmfLayout> layout);
 
 Mesh read(const FilePath& path, Notes& notes);
