@@ -197,7 +197,7 @@ class PolyhedraReader {
     return number;
   }
 
-  /// Throws if the zone has polygons with ParentElements, but neither polyhedra nor other elements.
+  /// Throws if a zone of volumes has no elements other than polygons, and polygons have ParentElements.
   void require_cells() const {
     if (reading_.metadata->cell_dimension < 3) return;
     for (const FoundSection& found : sections_) {

@@ -73,7 +73,7 @@ struct Series {
   std::vector<std::string> arrays = {};  ///< the mesh's array of each step; empty if there are no values
   // each has an entry for each block if the variable is of elements, else one entry
   std::vector<bool> present = {};   ///< whether the file's table of variables marks values
-  std::vector<bool> declared = {};  ///< whether the file has a netCDF variable, even without values
+  std::vector<bool> declared = {};  ///< whether the file has a netCDF variable, even if it has no steps
 };
 
 struct BlockRecord {

@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::size_t kLongestName = 255;
 
-/// Returns a name in the form of a table of names: without blanks at its ends, which readers would drop.
+/// Returns a name without control characters and without blanks at its ends, cut to `kLongestName` bytes.
 std::string held_name(const std::string& name) {
   return std::string(utf8_prefix(trimmed(plain_name(name)), kLongestName));
 }

@@ -220,8 +220,8 @@ class FamilyWriter {
     return result;
   }
 
-  /// Returns the number of a family with the groups of `wanted`: the number of `wanted` if the file's family
-  /// of that number has the same groups, else the number of another family of the file, or of a new family.
+  /// Returns the number of a family with the groups of `wanted`: `wanted.number` if the file's family of that
+  /// number has the same groups, else that of another family of the file; 0 for no groups; or a new number.
   std::int64_t number_for(const Family& wanted) {
     std::vector<std::string> groups = wanted.groups;
     std::sort(groups.begin(), groups.end());

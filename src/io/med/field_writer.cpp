@@ -165,8 +165,7 @@ class FieldWriter {
     });
   }
 
-  /// Returns the profile for these rows of a piece: named after `old` if that is one; kNoProfile for all
-  /// items.
+  /// Returns the name of the profile for these rows, made from `old` or the field; kNoProfile for all items.
   std::string profile_for(const std::string& old, const Rows& rows, const Piece& piece) {
     if (old != kNoProfile) return profiles_.name_for(old, rows.places);
     if (rows.rows.size() == items_of(piece.type)) return old;

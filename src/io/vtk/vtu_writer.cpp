@@ -358,7 +358,7 @@ class VtuWriter {
   }
 
   void write_header() {
-    // first version with polyhedra by face: 2.3; with VTK 9's order of nodes: 2.1; with wide headers: 1.0
+    // polyhedra by face need version 2.3, VTK 9's order of nodes 2.1 or later, wide headers 1.0 or later
     const bool order = std::any_of(from_.types.begin(), from_.types.end(), is_higher_order_hexahedron);
     out_.print(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"{}\" byte_order=\"{}\" "
