@@ -53,7 +53,7 @@ class MovedPart {
   /// Returns the cells in this rank's range of new places, with the new numbers of their vertices. Every rank
   /// has to call it. O(entries).
   ///
-  /// @param cells  vertices of the part's cells; freed early
+  /// @param cells  vertices of the part's cells; freed before the exchange
   [[nodiscard]] Rows moved_cells(Rows cells) const;
   /// Returns the rows that move to this rank's places. `rows` has `width` bytes for each vertex or cell of
   /// the part. Every rank has to call it. O(bytes).

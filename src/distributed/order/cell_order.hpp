@@ -15,7 +15,7 @@ namespace meshorder::distributed {
 /// O(entries + m log m) for m cells of a rank.
 ///
 /// @param cells          the owners of the cells
-/// @param cell_vertices  new numbers of the vertices of each cell of this rank, at least one; freed early
+/// @param cell_vertices  new numbers of each cell's vertices, at least one; freed before the exchange
 /// @param vertices       layout of the new numbers: the owner of a cell's largest number sorts the cell
 /// @return this rank's range of the cells' numbers in their new order; ranges follow in rank order
 /// @throws as `Communicator::exchange`; SharedError if a rank gets more than 2,147,483,647 cells

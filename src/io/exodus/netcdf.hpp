@@ -219,7 +219,7 @@ class NcOutput {
   void later(std::function<void()> put) { puts_.push_back(std::move(put)); }
   [[nodiscard]] bool has_variable(const std::string& name) const { return declared_.contains(name); }
 
-  /// Writes all values, and puts the file in place unless the caller does so.
+  /// Writes all values, and moves the file to its final path unless the caller does so.
   void finish();
 
  private:
@@ -230,7 +230,7 @@ class NcOutput {
   friend class NcSink;
   Library library_;
   std::string name_;
-  std::optional<OutputFile> out_;  ///< empty if the caller puts the file in place
+  std::optional<OutputFile> out_;  ///< empty if the caller moves the file to its final path
   bool is_in_memory_;
   Storage storage_;
   int id_ = -1;

@@ -358,7 +358,7 @@ std::vector<std::string> ExodusMetadata::contents() const {
 
 namespace {
 
-/// Writes a mesh to a path, on disk or in a store, or to a file that the caller puts in place.
+/// Writes a mesh to a path, on disk or in a store, or to a file that the caller then moves to its path.
 template <class Target>
 void write_to(const Target& target, const Mesh& mesh, Notes& notes) {
   const ExodusMetadata* const own = own_metadata(mesh);

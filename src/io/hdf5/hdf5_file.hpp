@@ -162,8 +162,8 @@ class File {
 /// Returns the path with one slash before each part and no slash at its end.
 std::string normal_path(std::string_view path);
 
-/// A file that begins as a copy of `bytes` and is put in place after it was changed. It is in memory if the
-/// path is in a store, else beside the path. Throws as OutputFile and File.
+/// A file that begins as a copy of `bytes` and is moved to `path` after it was changed. Until then it is in
+/// memory if the path is in a store, else beside the path. Throws as OutputFile and File.
 class NewFile {
  public:
   NewFile(const FilePath& path, const std::string& bytes);
@@ -177,7 +177,7 @@ class NewFile {
   std::optional<File> file_;
 };
 
-/// Writes an HDF5 file: opens `bytes` as a `NewFile`, calls `fill` to change it, and puts it in place.
+/// Writes an HDF5 file: opens `bytes` as a `NewFile`, calls `fill` to change it, and moves it to `path`.
 void write_from(const FilePath& path, const std::string& bytes, const std::function<void(File&)>& fill);
 
 }  // namespace meshorder::hdf5

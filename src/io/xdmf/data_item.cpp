@@ -241,8 +241,8 @@ const hdf5::File& DataReader::file(pugi::xml_node item, const std::string& name)
   if (known != files_.end()) return known->second;
   hdf5::File opened = hdf5::File::open(path_of(item, name));
   const std::string mark = opened.text_attribute("/", kMark).value_or("");
-  // the .xdmf file is put in place first: if the files are from two runs, this is the newer file, and it has
-  // a mark
+  // the .xdmf file reaches its final path first: if the files are from two runs, it is the newer one, and it
+  // has a mark
   if (!document_.mark().empty() && mark != document_.mark()) {
     throw NotTogether(document_.error(
         item, fmt::format("'{}' was not written together with this file: their marks differ", name),
