@@ -57,7 +57,7 @@ struct SpanSize {
   SpanSize& operator+=(const SpanSize& other);
 };
 
-/// Adds up the spans of all edges, on all threads. `place_of` as in `sampled_edge_span`. O(n + edges).
+/// Adds up the spans of all edges, on all threads. Polls. `place_of` as in `sampled_edge_span`. O(n + edges).
 SpanSize span_size(GraphRef graph, std::span<const Index> place_of);
 
 /// Like `edge_span`. From 262,144 vertices on it uses all threads, and `mean_log2` is the estimate of
