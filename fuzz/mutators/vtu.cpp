@@ -4,6 +4,7 @@
 #include "fuzz/families/families.hpp"
 #include "fuzz/mutators/choice.hpp"
 #include "io/stream/base64.hpp"
+#include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/text.hpp"
 #include "io/format.hpp"
 #include "io/stream/scanner.hpp"
 #include "lab/scenario/integrator_reader.hpp"
@@ -186,20 +185,6 @@ Scenario read_scenario(const std::filesystem::path& path) {
                      "give the name or the file of a scenario, and a mesh by --mesh");
   }
   return parse_scenario(file.all(), path.string());
-}
-
-Scenario find_scenario(const std::string& name_or_file) {
-  for (const BuiltInScenario& scenario : built_in_scenarios()) {
-    if (scenario.name == name_or_file)
-      return parse_scenario(scenario.text, "scenario " + std::string(scenario.name));
-  }
-  std::error_code code;
-  if (!std::filesystem::exists(name_or_file, code))
-    throw InputError(name_or_file, "neither a scenario nor a file has this name",
-                     "there are " + join(built_in_scenarios(), [](const auto& scenario) {
-                       return scenario.name;
-                     }) + ", or give a file as docs/simulate.md describes");
-  return read_scenario(name_or_file);
 }
 
 }  // namespace meshorder
