@@ -92,11 +92,11 @@ std::vector<RotationTime> rotation_times() {
   }
   const mo::AlignedVector<float> floats(doubles.begin(), doubles.end());
   std::vector<RotationTime> times;
-  for (std::int64_t targets = simd_targets() & HWY_TARGETS; targets != 0; targets &= targets - 1) {
-    limit_simd_targets(targets);
+  for (std::int64_t targets = mo::simd_targets() & HWY_TARGETS; targets != 0; targets &= targets - 1) {
+    mo::limit_simd_targets(targets);
     times.push_back({hwy::TargetName(targets & -targets), mo::best_ns(doubles), mo::best_ns(floats)});
   }
-  limit_simd_targets(0);
+  mo::limit_simd_targets(0);
   return times;
 }
 #endif
