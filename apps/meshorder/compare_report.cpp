@@ -285,10 +285,8 @@ void print_comparison(const Console& console, const ComparisonReport& comparison
         "gpu: how many times fewer sectors of memory atomic additions touch on a graphics processor, "
         "counted");
   }
-  console.print(
-      "{0} is not an order of your {1}: it is a synthetic {1} of the same size, in the best of orders, for "
-      "reference.",
-      kBand, comparison.is_matrix() ? "matrix" : "mesh");
+  console.print("{0} is not an order of your {1}. It is a synthetic {1} of its size that streams.", kBand,
+                comparison.is_matrix() ? "matrix" : "mesh");
 }
 
 void print_comparison_details(Console& console, const ComparisonReport& comparison) {

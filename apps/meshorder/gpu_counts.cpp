@@ -206,7 +206,7 @@ std::string to_string(const GpuReport& report) {
   if (!changes.empty()) sentence += ": " + join(changes);
   if (is_bound_by_launches(report))
     sentence +=
-        "; on so small a mesh, kernels gain little: an H100 takes longer to launch them than to run them";
+        "; on so small a mesh, kernels gain little: an H100 takes longer to launch them";
   return sentence;
 }
 

@@ -72,9 +72,11 @@ const EntitySet* SetReader::find(Association association, bool in_assembly, std:
 }
 
 bool SetReader::knows(Association association, std::string_view name) const {
-  const std::string_view after_dot = name.substr(name.find('.') + 1);  // the whole name if there is no dot
-  return find(association, true, name) != nullptr ||
-         places_.contains(Key{association, true, upper_case(after_dot)});
+  const auto is_key = [&](std::string_view key) {
+    return places_.contains(Key{association, false, upper_case(key)}) ||
+           places_.contains(Key{association, true, upper_case(key)});
+  };
+  return is_key(name) || is_key(name.substr(name.find('.') + 1));  // the whole name if there is no dot
 }
 
 void SetReader::add_block(Association association, std::string_view name, Index first, Index count) {
