@@ -205,8 +205,7 @@ std::string to_string(const GpuReport& report) {
   std::string sentence = "there is a better order for a graphics processor";
   if (!changes.empty()) sentence += ": " + join(changes);
   if (is_bound_by_launches(report))
-    sentence +=
-        "; on so small a mesh, kernels gain little: an H100 takes longer to launch them";
+    sentence += "; on so small a mesh, kernels gain little: an H100 takes longer to launch them";
   return sentence;
 }
 
