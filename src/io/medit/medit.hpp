@@ -88,8 +88,8 @@ inline constexpr std::array kReferenceKinds{
     ReferenceKind{"TrianglesOnGeometricQuadrilaterals", Form::table, "t"},
     ReferenceKind{"QuadrilateralsOnGeometricTriangles", Form::table, "q"},
     ReferenceKind{"QuadrilateralsOnGeometricQuadrilaterals", Form::table, "q"},
-    ReferenceKind{"VertexOnGeometricVertex", Form::table,
-                  "v"},  // from here on BAMG's tables and those of libMesh 3
+    // the tables from here on are those of BAMG and libMesh 3
+    ReferenceKind{"VertexOnGeometricVertex", Form::table, "v"},
     ReferenceKind{"VertexOnGeometricEdge", Form::table, "v"},
     ReferenceKind{"VertexOnGeometricTriangle", Form::table, "v"},
     ReferenceKind{"VertexOnGeometricQuadrilateral", Form::table, "v"},
@@ -105,10 +105,10 @@ inline constexpr std::array kReferenceKinds{
     ReferenceKind{"VertexOnSupportTetrahedron", Form::table, "v"},
     ReferenceKind{"VertexOnSupportPentahedron", Form::table, "v"},
     ReferenceKind{"VertexOnSupportHexahedron", Form::table, "v"},
-    ReferenceKind{"SubDomainFromMesh", Form::rows,
-                  ".t.."},  // BAMG's: 3, a triangle of the domain, orientation, reference
-    ReferenceKind{"SubDomain", Form::rows,
-                  ".t.."},  // in a file of geometry: 2, an edge, …, as in the next line
+    // BAMG's: 3, a triangle of the domain, orientation, reference
+    ReferenceKind{"SubDomainFromMesh", Form::rows, ".t.."},
+    // in a file of geometry: 2, an edge, …, as in the next line
+    ReferenceKind{"SubDomain", Form::rows, ".t.."},
     ReferenceKind{"SubDomainFromGeom", Form::rows, ".e.."},
     ReferenceKind{"TangentAtEdges", Form::rows, "e..."},
     ReferenceKind{"CrackedEdges", Form::rows, "ee"},
@@ -121,8 +121,8 @@ inline constexpr std::array kReferenceKinds{
     ReferenceKind{"PeriodicEdges", Form::rows, "ee"},
     ReferenceKind{"PeriodicTriangles", Form::rows, "tt"},
     ReferenceKind{"PeriodicQuadrilaterals", Form::rows, "qq"},
-    ReferenceKind{"TangentAtEdgeVertices", Form::rows,
-                  "e.."},  // a cell, the place of a vertex in it, a tangent or normal
+    // these have a cell, the position of a vertex in it, and a tangent or normal
+    ReferenceKind{"TangentAtEdgeVertices", Form::rows, "e.."},
     ReferenceKind{"NormalAtTriangleVertices", Form::rows, "t.."},
     ReferenceKind{"NormalAtQuadrilateralVertices", Form::rows, "q.."},
 };
