@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kProgram = "meshorder-delaunay";
 
 [[noreturn]] void throw_misunderstood() {
-  throw InputError(kProgram, "its answer is not a triangulation", "install that of this version");
+  throw InputError(kProgram, "its answer is not a triangulation", "install the program of this version");
 }
 
 /// Throws unless all numbers are 0 … count − 1, or −1 if `may_lack`.

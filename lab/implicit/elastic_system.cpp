@@ -28,7 +28,7 @@ void check_masses(const RestShapes& rest, const MassMatrix& mass) {
       const Index v = rest.vertex(s, a);
       if (mass.vertices[v] > 0.0) continue;
       throw InvalidArgument("vertex " + std::to_string(v) +
-                            " has no mass: all tetrahedra at it are flat; take them out of the mesh");
+                            " has no mass: all tetrahedra at it are flat; remove them from the mesh");
     }
   }
 }

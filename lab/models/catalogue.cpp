@@ -149,7 +149,7 @@ void make_kept(const std::string& name, bool force, const Report& progress, cons
 
 [[noreturn]] void refuse_name(std::string_view name) {
   const auto name_of = [](const auto& entry) { return entry.name; };
-  throw InvalidArgument(fmt::format("unknown model '{}'; known are {}, {}, and sizes as in grid-40", name,
+  throw InvalidArgument(fmt::format("unknown model '{}'; known: {}, {}, and sizes as in grid-40", name,
                                     join(kRecipes, name_of), join(kRules, name_of)));
 }
 

@@ -56,7 +56,7 @@ void read_regions(const JsonValue& value, Elastic elastic, Scenario& scenario) {
                                     : std::to_string(group.whole(std::numeric_limits<std::int64_t>::min(),
                                                                  std::numeric_limits<std::int64_t>::max()));
     for (const RegionMaterial& other : scenario.regions) {
-      if (other.region == region.region) throw group.error("has an entry already", "keep one of them");
+      if (other.region == region.region) throw group.error("already has an entry", "keep one of them");
     }
     region.material = material_of(entry, elastic, scenario.material);
     scenario.regions.push_back(std::move(region));

@@ -14,9 +14,9 @@ Scenario find_scenario(const std::string& name_or_file) {
   std::error_code code;
   if (!std::filesystem::exists(name_or_file, code))
     throw InputError(name_or_file, "neither a scenario nor a file has this name",
-                     "there are " + join(built_in_scenarios(), [](const auto& scenario) {
+                     "give " + join(built_in_scenarios(), [](const auto& scenario) {
                        return scenario.name;
-                     }) + ", or give a file as docs/simulate.md describes");
+                     }) + ", or a file as docs/simulate.md describes");
   return read_scenario(name_or_file);
 }
 

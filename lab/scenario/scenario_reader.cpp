@@ -182,7 +182,7 @@ Scenario read_scenario(const std::filesystem::path& path) {
   const Scanner file(path);
   if (const Format* const format = format_of_bytes(file.all())) {
     throw InputError(path.string(), fmt::format("is not a scenario but a file of {}", format->name),
-                     "give the name or the file of a scenario, and a mesh by --mesh");
+                     "give the name or the file of a scenario, and a mesh with --mesh");
   }
   return parse_scenario(file.all(), path.string());
 }

@@ -208,7 +208,8 @@ void require_volume_cells(const Mesh& mesh, const std::string& file) {
   const int dimension = mesh.cells.highest_dimension();
   const std::vector<Shape>& shapes = mesh.cells.shapes;
   if (std::find(shapes.begin(), shapes.end(), Shape::polyhedron) != shapes.end()) {
-    throw InputError(file, "has polyhedra", "cut them into tetrahedra first, in ParaView by Tetrahedralize");
+    throw InputError(file, "has polyhedra",
+                     "cut them into tetrahedra first, in ParaView with Tetrahedralize");
   }
   if (dimension == 3) return;
   throw InputError(

@@ -49,8 +49,8 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
   const long process = holder_of(descriptor_);
   ::close(descriptor_);
   throw InputError(folder.string(),
-                   process > 0 ? fmt::format("process {} is at work on the study in it", process)
-                               : "another process is at work on the study in it",
+                   process > 0 ? fmt::format("process {} is using the study in this folder", process)
+                               : "another process is using the study in this folder",
                    "wait until it has ended, or name another folder");
 }
 

@@ -30,7 +30,7 @@ OrderingSpec study_ordering(std::string_view name) {
   const std::string vertices(name.substr(0, slash));
   const std::string elements(slash == std::string_view::npos ? "" : name.substr(slash + 1));
   if (!method_named(vertex_methods(), vertices) || !method_named(element_methods(), elements)) {
-    throw InvalidArgument("unknown ordering '" + std::string(name) + "'; known are " +
+    throw InvalidArgument("unknown ordering '" + std::string(name) + "'; known: " +
                           join(study_orderings(), [](const auto& ordering) { return ordering.name; }) +
                           ", and VERTICES/ELEMENTS, see meshorder methods");
   }
@@ -41,7 +41,7 @@ std::string mesh_of_size(std::string_view size, const std::string& mesh) {
   if (size == "paper") return mesh;
   if (size == "300k") return "armadillo-300k";
   if (size == "2m") return "grid-122";
-  throw InvalidArgument("unknown size '" + std::string(size) + "'; known are paper, 300k and 2m");
+  throw InvalidArgument("unknown size '" + std::string(size) + "'; known: paper, 300k and 2m");
 }
 
 std::vector<std::string> study_scenarios() {

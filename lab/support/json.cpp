@@ -115,7 +115,7 @@ void JsonValue::expect_keys(std::span<const std::string_view> known) const {
   if (!value_->is_object()) throw error("is " + kind(), "give an object {…} of " + join(known));
   for (const auto& [key, value] : value_->items()) {
     if (std::find(known.begin(), known.end(), key) == known.end())
-      throw error("the key '" + key + "' is unknown", "known are " + join(known));
+      throw error("the key '" + key + "' is unknown", "known: " + join(known));
   }
 }
 

@@ -97,7 +97,7 @@ class JsonValue {
       if (given == name) return value;
     }
     throw error("'" + given + "' is unknown",
-                "known are " + join(names, [](const auto& pair) { return std::string_view(pair.second); }));
+                "known: " + join(names, [](const auto& pair) { return std::string_view(pair.second); }));
   }
   template <NamedEnum Enum>
   [[nodiscard]] Enum one_of() const {

@@ -191,7 +191,7 @@ void ChildProcess::throw_ended() {
   int status = -1;
   if (id_ > 0) wait_for(std::exchange(id_, -1), status);
   std::string how = "ended";
-  if (status == -1) throw InputError(program_.string(), "a child process ended before", "start again");
+  if (status == -1) throw InputError(program_.string(), "a child process has already ended", "start again");
   if (WIFSIGNALED(status)) how = std::string("was ended by a signal: ") + ::strsignal(WTERMSIG(status));
   if (WIFEXITED(status)) how = "ended with status " + std::to_string(WEXITSTATUS(status));
   throw InputError(program_.string(), "a child process " + how, "is there enough memory?");

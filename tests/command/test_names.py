@@ -175,7 +175,7 @@ def test_two_studies_do_not_share_a_folder(tmp_path, command):
                 time.sleep(0.05)
             (tmp_path / "study" / "data" / "ball-8.vtu").write_text("of the first study")
             words = command.fails(*arguments)
-            assert f"process {first.pid} is at work" in words and "study" in words
+            assert f"process {first.pid} is using the study" in words and "study" in words
             assert (tmp_path / "study" / "data" / "ball-8.vtu").read_text() == "of the first study"
         finally:
             first.terminate()

@@ -169,10 +169,11 @@ TEST(Comparison, ShowsBothStudiesSideBySide) {
   EXPECT_EQ(findings.front(),
             "Of 8 savings that both studies measured, 1 differ beyond the noise; by chance alone about "
             "one of twenty would.");
-  EXPECT_EQ(findings.back(),
-            "Not of the same steps: stretch (4 steps in A, 8 in B). Later steps may gain more or less than "
-            "the first "
-            "ones.");
+  EXPECT_EQ(
+      findings.back(),
+      "Different numbers of steps: stretch (4 steps in A, 8 in B). Later steps may gain more or less than "
+      "the first "
+      "ones.");
 }
 
 TEST(Comparison, NamesWhatSavesHereAndCostsThere) {

@@ -184,7 +184,7 @@ TEST(ResultsJson, RefusesWhatIsMissingOrUnknown) {
   EXPECT_EQ(complaint([](Json& json) { json["machine"].erase("cores"); }),
             "machine: 'cores' is missing; give it; see docs/results.schema.json");
   EXPECT_EQ(complaint([](Json& json) { json["meshes"][0]["orders"][1]["kernels"]["spvm"] = 1; }),
-            "meshes[0].orders[1].kernels: the key 'spvm' is unknown; known are spmv, element, assembly, "
+            "meshes[0].orders[1].kernels: the key 'spvm' is unknown; known: spmv, element, assembly, "
             "springs");
   EXPECT_EQ(complaint([](Json& json) { json["colour"] = 1; }).substr(0, 38),
             "the file: the key 'colour' is unknown;");
@@ -214,7 +214,7 @@ TEST(ResultsJson, RefusesNumbersOutOfRange) {
   EXPECT_EQ(complaint([](Json& json) { json["machine"]["processor"] = ""; }),
             "machine.processor: is an empty text; give one");
   EXPECT_EQ(complaint([](Json& json) { json["scenarios"][0]["precision"] = "half"; }),
-            "scenarios[0].precision: 'half' is unknown; known are double, single");
+            "scenarios[0].precision: 'half' is unknown; known: double, single");
 }
 
 TEST(ResultsJson, RefusesListsThatDoNotFitEachOther) {

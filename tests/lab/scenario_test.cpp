@@ -210,7 +210,7 @@ TEST(Scenario, ErrorsOfAdmmNameThePlace) {
   };
   for (const Broken& broken : {
            Broken{R"("strain")", R"("corotational")",
-                  "material.model: 'corotational' is unknown; known are springs"},
+                  "material.model: 'corotational' is unknown; known: springs"},
            Broken{R"("strain")", R"("springs")", "material: the key 'regions' is unknown"},
            Broken{R"("strain")", R"("stvk")", "material: the key 'stiffness' is unknown"},
            Broken{R"("stiffness": 300, )", "", "material: 'stiffness' is missing"},
@@ -322,7 +322,7 @@ TEST(Scenario, ErrorsNameTheFileThePlaceAndWhatWouldBeRight) {
       {changed("\"density\": 900", "\"regions\": {}"), {"material: 'density' is missing"}},
       {changed("900", R"(900, "regions": {"by": "x", "groups": []})"), {"material.regions.groups: has 0"}},
       {changed("900", R"(900, "regions": {"by": "x", "groups": [{"group": 1}, {"group": 1}]})"),
-       {"material.regions.groups[1].group: has an entry already"}},
+       {"material.regions.groups[1].group: already has an entry"}},
       {changed("900", R"(900, "regions": {"by": "x", "groups": [{"group": 1, "young": -1}]})"),
        {"material.regions.groups[0].young: is -1"}},
       {changed("0.02", R"(0.02, "gravity": [0, 1])"), {"integrator.gravity: has 2 entries", "give 3"}},

@@ -207,7 +207,7 @@ TEST(Tables, StateTheErrorOfPredictions) {
   // the times differ by more than 10 % in nine of the ten pairs, all except scrambled and VF scrambled. One
   // of the nine is predicted wrong: original (0.5, predicted 0.8) and Fiedler (0.25, predicted 1)
   EXPECT_EQ(value("Of pairs"), 9);
-  EXPECT_EQ(value("Told right"), 8);
+  EXPECT_EQ(value("Right"), 8);
   EXPECT_EQ(cell(tables, "kernels", "dragon, element force, Original", "Error, %").text, "+25.0");
   EXPECT_EQ(cell(tables, "kernels", "dragon, element force, Fiedler", "Error, %").text, "−50.0");
   EXPECT_EQ(cell(tables, "kernels", "dragon, element force, Scrambled", "Error, %").text, "–");

@@ -158,7 +158,7 @@ std::vector<std::string> comparison_findings(const ComparedStudy& a, const Compa
   }
   if (!shorter.empty()) {
     findings.push_back(
-        fmt::format("Not of the same steps: {}. Later steps may gain more or less than the first ones.",
+        fmt::format("Different numbers of steps: {}. Later steps may gain more or less than the first ones.",
                     in_words(shorter)));
   }
   const auto dashed = [](const StudyResults& results) {
@@ -169,7 +169,7 @@ std::vector<std::string> comparison_findings(const ComparedStudy& a, const Compa
     findings.emplace_back(
         "One of the studies does not record the precision of its scenarios; the checksums of their "
         "parameters, which "
-        "are the same, hold it.");
+        "are the same, include it.");
   }
   return findings;
 }

@@ -193,10 +193,10 @@ Table prediction_table(const StudyResults& results) {
       "prediction-error",
       "How far the predictions are off",
       fmt::format("Error of a predicted speedup over “{}”: predicted divided by measured, less 1, without "
-                  "its sign; over all meshes and orders. Told right: pairs of orders of a mesh that are "
+                  "its sign; over all meshes and orders. Right: pairs of orders of a mesh that are "
                   "measured more than 10 % apart and whose faster order is predicted to be the faster one.",
                   title_of(results, results.reference)),
-      {"Kernel", "Speedups", "Median error, %", "90 % within, %", "Largest, %", "Told right", "Of pairs"},
+      {"Kernel", "Speedups", "Median error, %", "90 % within, %", "Largest, %", "Right", "Of pairs"},
       {}};
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     const PredictionError error = prediction_error(results, k);
