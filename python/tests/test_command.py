@@ -164,7 +164,7 @@ def test_own_formats_on_one_side(deck, tmp_path):
 
     ok("order", "deck.inp", "-o", "sets.vtu", cwd=tmp_path)
     done = ok("order", "sets.vtu", "-o", "back.mdpa", cwd=tmp_path)
-    assert "back.mdpa: the file does not give back the point sets 'left'" in done.stderr
+    assert "back.mdpa: the file lacks the point sets 'left'" in done.stderr
     assert cells_by_corners(meshio.read(tmp_path / "back.mdpa")) == cells_by_corners(meshio.read(tmp_path / "deck.inp"))
 
 
@@ -214,7 +214,7 @@ def test_strict_allows_meshio_no_loss_either(deck, tmp_path):
     before = sorted(os.listdir(tmp_path))
     done = run("order", "sets.vtu", "-o", "back.mdpa", "--strict", "--maps", "m", cwd=tmp_path)
     assert done.returncode == 2 and done.stdout == ""
-    assert done.stderr.splitlines()[-1].startswith("meshorder: back.mdpa: the file does not give back the point sets")
+    assert done.stderr.splitlines()[-1].startswith("meshorder: back.mdpa: the file lacks the point sets")
     assert sorted(os.listdir(tmp_path)) == before
     ok("order", "deck.hmf", "-o", "all.hmf", "--strict", cwd=tmp_path)
 

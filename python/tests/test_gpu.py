@@ -225,7 +225,7 @@ def test_the_command_prints_json(run, path):
 
 
 @pytest.mark.parametrize("words, says", [
-    (["--details"], "--details is not possible with --gpu; --methods, --threads, --json and --quiet are"),
+    (["--details"], "--details is not possible with --gpu; only --methods, --threads, --json and --quiet are"),
     (["--methods"], "--methods: the value is empty; see meshorder compare --help"),
     (["--methods", "lexmax"], "unknown vertex order 'lexmax'"),
     (["--threads", "two"], "--threads: expected a whole number, not 'two'; see meshorder compare --help"),

@@ -157,7 +157,7 @@ def test_comparison_and_advice(mesh):
         meshorder.advise(mesh, measure=False, kernels="tuned")
     with pytest.raises(InvalidArgument, match="gpu_cost and gpu_product_cost count"):
         meshorder.advise(mesh, workload="gpu")
-    with pytest.raises(InvalidArgument, match="known are plain, tuned"):
+    with pytest.raises(InvalidArgument, match="known: plain, tuned"):
         meshorder.compare(mesh, kernels="fast")
     with pytest.raises(InvalidArgument, match="zen"):
         meshorder.compare(mesh, machine="zen9")

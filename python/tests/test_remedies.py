@@ -150,7 +150,7 @@ def test_results_name_what_their_permutations_have():
         np.zeros(60)[order]
     of_mesh = meshorder.order_mesh(POINTS, TETRAHEDRA)
     for name in ("permutation", "old_to_new", "move"):
-        with pytest.raises(AttributeError, match=f"a MeshOrder has no '{name}': take that of its .vertices or .cells"):
+        with pytest.raises(AttributeError, match=f"a MeshOrder has no '{name}': use that of its .vertices or .cells"):
             getattr(of_mesh, name)
     for result in (order, of_mesh):
         assert not hasattr(result, "anything_else")

@@ -24,7 +24,7 @@ def _as_array(values: Any, name: str) -> NDArray[Any]:
         values = values.detach().cpu()  # a tensor of PyTorch
     if getattr(values, "__dlpack_device__", None) is not None and not isinstance(values, np.ndarray):
         if int(values.__dlpack_device__()[0]) != 1:
-            raise InvalidArgument(f"{name}: the array is on a GPU; bring it to the CPU first, by .cpu() or .get()")
+            raise InvalidArgument(f"{name}: the array is on a GPU; bring it to the CPU first, with .cpu() or .get()")
     try:
         array = np.asarray(values)
     except ValueError as error:  # ragged lists

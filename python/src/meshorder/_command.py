@@ -164,7 +164,7 @@ def _compare_on_gpu(words: _Words) -> int:
     from ._gpu.comparison import compare_on_gpu
 
     for name in sorted(words.options.keys() - _WITH_GPU):
-        raise Error(f"{name} is not possible with --gpu; --methods, --threads, --json and --quiet are")
+        raise Error(f"{name} is not possible with --gpu; only --methods, --threads, --json and --quiet are")
     if words.others:
         raise Error(f"unexpected argument '{words.others[0]}'; see meshorder compare --help")
     methods = words.options.get("--methods")

@@ -20,5 +20,5 @@ def load(module: str, extra: str) -> Any:
         if (error.name or "").partition(".")[0] != package:
             raise
         raise ImportError(
-            f"{package} is needed and not installed; pip install 'meshorder[{extra}]' brings it", name=package
+            f"{package} is needed and not installed; pip install 'meshorder[{extra}]' installs it", name=package
         ) from None

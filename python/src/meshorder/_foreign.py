@@ -236,7 +236,7 @@ def _what_is_lost(mesh: Any, again: Any, path: str) -> Iterator[str]:
     for what in ("point_data", "cell_data", "point_sets", "cell_sets", "field_data"):
         names = [f"'{name}'" for name in getattr(mesh, what) if name not in getattr(again, what)]
         if names:
-            yield f"the file does not give back the {what.replace('_', ' ')} {', '.join(names)}"
+            yield f"the file lacks the {what.replace('_', ' ')} {', '.join(names)}"
     for what in ("point_sets", "cell_sets"):
         for name in getattr(mesh, what).keys() & getattr(again, what).keys():
             before, after = (_member_count(getattr(one, what)[name]) for one in (mesh, again))

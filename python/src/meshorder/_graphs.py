@@ -109,7 +109,7 @@ class Order:
 
         Raises:
             InvalidArgument: a graph of another size, ``side`` below 1.
-            ImportError: matplotlib is not installed; the extra ``plot`` brings it.
+            ImportError: matplotlib is not installed; the extra ``plot`` installs it.
         """
         offsets, neighbours, _ = graph_arrays(graph, mirror=True)
         return _plots.patterns(self, offsets, neighbours, side, axes)
@@ -198,7 +198,7 @@ class Quality:
             The Axes.
 
         Raises:
-            ImportError: matplotlib is not installed; the extra ``plot`` brings it.
+            ImportError: matplotlib is not installed; the extra ``plot`` installs it.
         """
         return _plots.quality(self, axes)
 

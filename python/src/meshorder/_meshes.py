@@ -49,7 +49,7 @@ class MeshOrder:
 
     def __getattr__(self, name: str) -> NoReturn:
         if not name.startswith("_") and (name in Order.__annotations__ or hasattr(Permutation, name)):
-            raise AttributeError(f"a MeshOrder has no {name!r}: take that of its .vertices or .cells")
+            raise AttributeError(f"a MeshOrder has no {name!r}: use that of its .vertices or .cells")
         raise AttributeError(f"'MeshOrder' object has no attribute {name!r}")
 
     def __repr__(self) -> str:
@@ -62,7 +62,7 @@ class MeshOrder:
 def _shape(type_name: Any) -> str:
     shape = _SHAPE_OF.get(re.sub(r"\d+$", "", str(type_name)))
     if shape is None:
-        raise InvalidArgument(f"cells: unknown type {type_name!r}; known are {', '.join(SHAPES)} and meshio's names")
+        raise InvalidArgument(f"cells: unknown type {type_name!r}; known: {', '.join(SHAPES)} and meshio's names")
     return shape
 
 

@@ -96,7 +96,7 @@ def _sources() -> dict[str, str]:
     if not three.is_file():
         raise Unavailable(
             "show: this build of meshorder has no three.js, which draws the mesh; install Debian's libjs-three (or set "
-            "MESHORDER_THREE_JS of CMake to the path of three.min.js, release 111) and build it again by pip install"
+            "MESHORDER_THREE_JS of CMake to the path of three.min.js, release 111) and build it again with pip install"
         )
     read = {path.name: path.read_text(encoding="utf-8") for path in _VIEWER.iterdir() if path.is_file()}
     scripts = "\n".join(text for name, text in sorted(read.items()) if name.endswith(".js") and name != three.name)

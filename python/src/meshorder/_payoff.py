@@ -153,7 +153,7 @@ class Comparison(Sequence[Candidate]):
         """Returns a pandas.DataFrame of `rows`, with a row for each order.
 
         Raises:
-            ImportError: pandas is not installed; the extra ``pandas`` brings it.
+            ImportError: pandas is not installed; the extra ``pandas`` installs it.
         """
         return load("pandas", "pandas").DataFrame(self.rows())
 
@@ -179,7 +179,7 @@ class Comparison(Sequence[Candidate]):
             The Axes.
 
         Raises:
-            ImportError: matplotlib is not installed; the extra ``plot`` brings it.
+            ImportError: matplotlib is not installed; the extra ``plot`` installs it.
         """
         return _plots.candidates(self._candidates, self._kernels, axes)
 

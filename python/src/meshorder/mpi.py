@@ -125,7 +125,7 @@ def _check_communicator(value: Any) -> None:
     if hasattr(value, "allgather") and hasattr(value, "py2f"):
         return
     if hasattr(value, "tompi4py"):
-        remedy = "petsc4py's communicators become one by .tompi4py()"
+        remedy = "petsc4py's communicators become one with .tompi4py()"
     else:
         remedy = "comm.py2f() is for C"
     raise _errors.InvalidArgument(f"communicator: expected one of mpi4py ({remedy}), not {type(value).__name__}")
