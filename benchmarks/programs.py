@@ -208,7 +208,7 @@ def main():
         parser.error("give a folder for the meshes")
     for name in arguments.programs:
         if name not in PROGRAMS:
-            parser.error(f"{name}: unknown; known are {' '.join(PROGRAMS)}")
+            parser.error(f"{name}: unknown; known: {' '.join(PROGRAMS)}")
     arguments.folder.mkdir(parents=True, exist_ok=True)
     everything = json.loads(arguments.json.read_text()) if arguments.json and arguments.json.exists() else {}
     print(HEAD, flush=True)

@@ -157,7 +157,7 @@ void order(const std::string& input, const std::string& output, const MeshMethod
 
   std::vector<std::string> lines = command::lines_of_order(made, {}, spans, stored_matrix(mesh));
   if (command::has_new_numbers(mesh, made, options))
-    lines.push_back(fmt::format("{:<10} {}", "numbers", "of vertices and cells are new"));
+    lines.push_back(fmt::format("{:<10} {}", "numbers", "new for vertices and cells"));
   parts.push_back({"lines", join(
                                 lines, [](const std::string& line) { return visible(line); }, "\n")});
   parts.push_back({"notes", join(

@@ -47,7 +47,7 @@ void list(const Common& common) {
     print_model(console, model);
     models.push_back(model_json(model));
   }
-  console.print_list("Models without a path are not made yet: `meshorder models make NAME`");
+  console.print_list("Models without a path do not exist yet; `meshorder models make NAME` makes one");
   console.print_json({{"models", models}});
 }
 

@@ -156,7 +156,7 @@ std::string title_of(const Page& page) {
 void check_name_of_page(const std::string& output, const char* of) {
   const std::string extension = fs::path(output).extension().string();
   if (same_but_for_case(extension, ".html") || same_but_for_case(extension, ".htm")) return;
-  throw InvalidArgument("-o " + output + " names the page on " + of + ": give a name that ends in .html");
+  throw InvalidArgument("-o " + output + " names the page on " + of + "; give a name that ends in .html");
 }
 
 FilePath output_or(const ReportArguments& arguments, const char* usual) {
@@ -214,7 +214,7 @@ FilePath results_of(const std::string& input) {
   const StudyFolder folder(input);
   if (openfoam::is_case(input))
     throw InputError(input, "is an OpenFOAM case, but a report is on mesh files or on studies",
-                     "order its cells by meshorder openfoam " + input);
+                     "order its cells with meshorder openfoam " + input);
   if (!fs::exists(folder.results()))
     throw InputError(input, "holds no results.json",
                      "name the folder of a study that `meshorder reproduce` made, or mesh files");
@@ -301,7 +301,7 @@ void run(const ReportArguments& arguments) {
     throw InvalidArgument(*study + " is a study: report on one by itself, or compare two");
   if (!arguments.option_of_meshes.empty())
     throw InvalidArgument(arguments.option_of_meshes + " is for a report on meshes; " + *study +
-                          " is a study, which was measured before");
+                          " is a study, whose measurements exist");
   if (arguments.inputs.size() == 2) return compare_studies(console, arguments);
   report_on_study(console, arguments);
 }

@@ -96,7 +96,7 @@ void run(const ReproduceArguments& arguments) {
   if (finished || std::filesystem::exists(folder.results())) report(console, folder, progress);
   if (!finished)
     throw CommandError(
-        fmt::format("stopped; finished runs are kept in {}, and the same command resumes from there",
+        fmt::format("stopped; finished runs are kept in {}, and the same command continues from there",
                     arguments.folder),
         128 + Interruption::signal());
 }
@@ -107,8 +107,8 @@ void add_reproduce(CLI::App& subcommand) {
   subcommand.footer(
       "Examples:\n"
       "  meshorder reproduce --quick -o results   a few steps of each scenario: some minutes\n"
-      "  meshorder reproduce -o results           240 steps, three runs: hours; stop it by Ctrl-C and\n"
-      "                                           resume it later by the same command");
+      "  meshorder reproduce -o results           240 steps, three runs: hours; stop it with Ctrl-C and\n"
+      "                                           resume it later with the same command");
   const auto arguments = std::make_shared<ReproduceArguments>();
   arguments->threads = 1;
   StudyPlan& plan = arguments->plan;

@@ -264,7 +264,7 @@ void add_scenario_options(CLI::App& subcommand, SimulateArguments& arguments) {
   CLI::Option* const order = subcommand.add_option(
       "--order", arguments.order,
       "VERTICES or VERTICES/ELEMENTS. Without ELEMENTS, the method is also that of the elements if it\n"
-      "is auto, original or scrambled; else they are ordered by lexmax. Elements of water follow max");
+      "is auto, original or scrambled; else elements are ordered by lexmax, those of water by max");
   subcommand.add_option("--vertices", arguments.vertices, "Method for vertices, see `meshorder methods`")
       ->excludes(order);
   subcommand.add_option("--elements", arguments.elements, "Method for elements, see `meshorder methods`")

@@ -221,7 +221,7 @@ void print_fluid_steps(const Console& console, const Simulation& simulation, con
                 sum.cg_iterations / steps, lowest, highest);
   const auto& fluid = dynamic_cast<const Fluid&>(*simulation.body);
   if (!fluid.order().ordering().stays())
-    console.print("{:<10} {} times again in this run", "ordered", fluid.order().fresh_orders());
+    console.print("{:<10} {} more times in this run", "ordered", fluid.order().fresh_orders());
   double time = 0;
   for (const StepRecord& step : record.steps) time += step.report.time_step;
   console.print("{:<10} {:.4g} s of the flow; {} tetrahedra in the last step", "flow", time,

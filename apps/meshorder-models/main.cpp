@@ -18,7 +18,7 @@ using namespace meshorder::models;
 
 void run_wrap(const std::string& in, const std::string& out, const WrapOptions& options) {
   if (std::isnan(options.alpha_ratio) || std::isnan(options.offset_ratio)) {  // CLI::Range accepts NaN
-    throw InputError("a ratio is not a number; a ratio should be 1 or more");
+    throw InputError("a ratio is not a number; it must be 1 or more");
   }
   check_writable_place(out);
   const Surface surface = read_off(in);

@@ -55,14 +55,13 @@ class Lines {
   template <class Number>
   Number number(std::string_view wanted) {
     const auto text = word();
-    if (text.empty()) fail("the line ends too early", fmt::format("here should be {}", wanted));
+    if (text.empty()) fail("the line ends too early", fmt::format("expected {}", wanted));
     const char* begin = text.data() + (text.front() == '+' ? 1 : 0);
     const char* end = text.data() + text.size();
     Number value{};
     const auto [stop, error] = std::from_chars(begin, end, value);
     if (error != std::errc{} || stop != end) {
-      fail(fmt::format("'{}' is not {}", text.substr(0, 40), wanted),
-           fmt::format("here should be {}", wanted));
+      fail(fmt::format("'{}' is not {}", text.substr(0, 40), wanted), fmt::format("expected {}", wanted));
     }
     return value;
   }
@@ -103,7 +102,7 @@ Surface read_off(const std::filesystem::path& file) {
   if (!lines.at_word() && !lines.next()) lines.fail("ends before the counts", "two counts must follow OFF");
   const auto n_points = lines.number<std::uint32_t>("a number of vertices");
   const auto n_faces = lines.number<std::uint32_t>("a number of faces");
-  if (n_points < 3 || n_faces < 1) lines.fail("an empty surface", "it should have a triangle");
+  if (n_points < 3 || n_faces < 1) lines.fail("the surface is empty", "at least one triangle is needed");
 
   // a vertex or a face takes six bytes or more, so a false count cannot make this large
   Surface surface;
@@ -116,7 +115,7 @@ Surface read_off(const std::filesystem::path& file) {
     auto& point = surface.points.emplace_back();
     for (double& x : point) {
       x = lines.number<double>("a coordinate");
-      if (!std::isfinite(x)) lines.fail("a coordinate is not finite", "all coordinates should be numbers");
+      if (!std::isfinite(x)) lines.fail("a coordinate is not finite", "a finite number is needed");
     }
   }
   for (std::uint32_t f = 0; f < n_faces; ++f) {
@@ -125,7 +124,7 @@ Surface read_off(const std::filesystem::path& file) {
     }
     const auto corners = lines.number<std::uint32_t>("a number of corners");
     if (corners != 3)
-      lines.fail(fmt::format("a face of {} corners", corners), "all faces should be triangles");
+      lines.fail(fmt::format("a face has {} corners", corners), "all faces must be triangles");
     auto& triangle = surface.triangles.emplace_back();
     for (auto& v : triangle) {
       v = lines.number<std::uint32_t>("a vertex");
@@ -142,8 +141,8 @@ void check_writable_place(const std::filesystem::path& file) {
     throw InputError(fmt::format("{}: is a folder; give the name of a file to write", file.string()));
   }
   if (file.has_parent_path() && !std::filesystem::is_directory(file.parent_path())) {
-    throw InputError(
-        fmt::format("{}: there is no folder {}; make it first", file.string(), file.parent_path().string()));
+    throw InputError(fmt::format("{}: the folder {} does not exist; make it first", file.string(),
+                                 file.parent_path().string()));
   }
 }
 
@@ -171,7 +170,7 @@ void write_off(const std::filesystem::path& file, const Surface& surface) {
     std::error_code ignored;
     if (opened >= 0) std::filesystem::remove(partial, ignored);
     throw std::runtime_error(
-        fmt::format("{}: cannot be written; check the room and rights of its folder", file.string()));
+        fmt::format("{}: cannot be written; check the space and permissions of its folder", file.string()));
   }
 }
 

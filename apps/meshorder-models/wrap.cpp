@@ -41,7 +41,7 @@ Surface wrap(const Surface& surface, const WrapOptions& options) {
   Mesh mesh;
   CGAL::alpha_wrap_3(points, surface.triangles, diagonal / options.alpha_ratio,
                      diagonal / options.offset_ratio, mesh);
-  if (mesh.is_empty()) throw std::runtime_error("the wrap came out empty; try other ratios");
+  if (mesh.is_empty()) throw std::runtime_error("the wrap is empty; try other ratios");
 
   Surface result;
   result.points.reserve(mesh.number_of_vertices());

@@ -47,7 +47,7 @@ std::optional<std::string> option_of_one_process(const CLI::App& app) {
   for (const std::string& word : app.remaining(true)) {
     const std::string name = word.substr(0, word.find('='));
     if (std::ranges::find(kOptionsOfOneProcess, name) == kOptionsOfOneProcess.end()) continue;
-    return "'" + name + "' is not supported when parts are made or several ranks run; leave it out";
+    return "'" + name + "' is not supported with --parts or several ranks; leave it out";
   }
   return std::nullopt;
 }
@@ -56,7 +56,7 @@ std::optional<std::string> option_of_one_process(const CLI::App& app) {
 int run(const Communicator& communicator, bool is_started_as_rank, std::vector<std::string> arguments) {
   CLI::App app;
   app.description(
-      "The program that `meshorder` runs if mpirun or srun starts several processes: orders a mesh by all\n"
+      "The program that `meshorder` runs if mpirun or srun starts several processes: orders a mesh on all\n"
       "ranks. The other commands run in one process, without mpirun.");
   app.name("meshorder-mpi");
   app.set_version_flag("-V,--version", MESHORDER_VERSION);
@@ -81,8 +81,9 @@ int run(const Communicator& communicator, bool is_started_as_rank, std::vector<s
     if (communicator.is_root()) meshorder::command::write_stdout(text.str());
   } catch (const CLI::ParseError& error) {
     if (meshorder::command::unknown_command(app))
-      return report_at_root(
-          communicator, "several ranks run `order` only; start `" + first + "` without mpirun", kBadInput);
+      return report_at_root(communicator,
+                            "with several ranks only `order` runs; start `" + first + "` without mpirun",
+                            kBadInput);
     if (const auto fault = option_of_one_process(app)) return report_at_root(communicator, *fault, kBadInput);
     return report_at_root(communicator, meshorder::command::usage_fault(app, error), kBadInput);
   }
@@ -95,7 +96,7 @@ int report_launcher(bool is_first_process) {
   return is_first_process
              ? report_failure(
                    "the launcher started several processes, but MPI sees each of them alone: start "
-                   "them by mpirun of " +
+                   "them with the mpirun of " +
                        meshorder::distributed::name_of_mpi(),
                    kBadInput)
              : kBadInput;

@@ -87,7 +87,8 @@ bool needs_root(const Arguments& arguments) {
 void check_count_of_pieces(const Communicator& communicator, const Arguments& arguments) {
   communicator.together([&] {
     if (arguments.is_started_as_rank || arguments.parts > 0 || arguments.pieces.empty()) return;
-    throw InvalidArgument("--pieces: one process makes one piece; give --parts N, or start by mpirun -n N");
+    throw InvalidArgument(
+        "--pieces: one process makes one piece; give --parts N, or start it with mpirun -n N");
   });
 }
 
@@ -190,7 +191,7 @@ void print_report(const Console& console, const DistributedOptions& options, con
   for (const auto& [stage, seconds] : report.seconds)
     stages += fmt::format("{}{} {}", stages.empty() ? "" : ", ", stage, duration(seconds));
   console.print("{:<10} {}", "time", stages);
-  console.print("{:<10} at most {} on a rank, {} at rank 0", "memory",
+  console.print("{:<10} at most {} on a rank, {} on rank 0", "memory",
                 size_text(static_cast<std::uint64_t>(*std::max_element(peaks.begin(), peaks.end()))),
                 size_text(static_cast<std::uint64_t>(peaks.front())));
 }
@@ -351,7 +352,7 @@ void add_partition_options(CLI::App& subcommand, Arguments& arguments) {
       ->capture_default_str();
   subcommand
       .add_option("--parts", arguments.parts,
-                  "Number of parts, at most that of vertices (of rows in a matrix); 0: as many as ranks")
+                  "Number of parts, at most the number of vertices (rows of a matrix); 0: one for each rank")
       ->check(whole_from(0))
       ->capture_default_str();
   subcommand
@@ -366,14 +367,14 @@ void add_partition_options(CLI::App& subcommand, Arguments& arguments) {
   subcommand
       .add_option(
           "--balance", arguments.balance,
-          "Give all parts the same number of `vertices`, or of `cells`. For cells, a vertex counts by its\n"
-          "shares of its elements")
+          "Give all parts the same number of `vertices`, or of `cells`. For cells, the weight of a vertex\n"
+          "is its share of its elements")
       ->check(CLI::IsMember({"vertices", "cells"}))
       ->capture_default_str();
   subcommand
       .add_option(
           "--interface", arguments.interface_place,
-          "Place of the interface in each part: of the vertices that share an element with other parts.\n"
+          "Place of the interface, the vertices that share an element with other parts, in each part.\n"
           "`mixed`: among the others, in the method's order. `last`: after the others, so that a program\n"
           "can work on these while it waits for data of the interface")
       ->check(CLI::IsMember({"mixed", "last"}))
@@ -384,8 +385,8 @@ void add_partition_options(CLI::App& subcommand, Arguments& arguments) {
 
 void add_distributed_order(CLI::App& subcommand, const Communicator& communicator, bool is_started_as_rank) {
   subcommand.description(
-      "Reorder a mesh by all ranks: cut it into parts, order each part, and number the parts one after\n"
-      "another. Parts that touch get near numbers.\n"
+      "Reorder a mesh on all ranks: cut it into parts, order each part, and number the parts one after\n"
+      "another. Neighbouring parts get close numbers.\n"
       "All ranks read the mesh and write the results if it is\n"
       "- a .vtu file of one piece with raw appended data, compressed or not,\n"
       "- a .vtkhdf file of one partition without chunks,\n"

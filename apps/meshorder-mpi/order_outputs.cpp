@@ -167,7 +167,7 @@ void OrderOutputs::write_pieces(const GridRows& grid, const distributed::Distrib
   const distributed::PieceSchema schema = schema_of_pieces(communicator_, grid, files_.ghosts);
   Notes lacking;
   if (!schema.replaced().empty())
-    lacking = {"the pieces have arrays of their own in place of those " + join(schema.replaced())};
+    lacking = {"the pieces have other arrays of the names " + join(schema.replaced())};
   if (files_.has_pieces_in_one_file()) {
     const Notes losses = losses_in_vtkhdf(schema);
     lacking.insert(lacking.end(), losses.begin(), losses.end());

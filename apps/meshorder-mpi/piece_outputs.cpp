@@ -72,7 +72,7 @@ PieceOutputs::PieceOutputs(fs::path folder, std::string name)
     return;
   }
   if (!fs::is_directory(folder_, code))
-    throw InputError(folder_.string(), "is not a folder", "--pieces needs one, or makes it");
+    throw InputError(folder_.string(), "is not a folder", "--pieces needs a folder, and makes a missing one");
   (void)OutputFile(FilePath::derived(index()));
   (void)old_pieces();
 }

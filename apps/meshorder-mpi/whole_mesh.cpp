@@ -43,7 +43,7 @@ WholeMesh read_at_root(const Communicator& communicator, const MeshFiles& files,
     static_cast<MeshToOrder&>(whole) = read_to_order(files, notes);
     if (whole.mesh.cell_count() > kManyCells) {
       notes.push_back(with_commas(whole.mesh.cell_count()) +
-                      " cells are read and written by rank 0, which has memory for all of them");
+                      " cells are read and written by rank 0, which needs memory for all of them");
     }
     whole.arranged = arrange_cells(whole.mesh, output_format_of(files.output, whole.mesh.format));
     return whole;

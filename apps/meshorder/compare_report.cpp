@@ -282,11 +282,10 @@ void print_comparison(const Console& console, const ComparisonReport& comparison
   for (const KernelTable& table : comparison.kernels) print_speedups(console, comparison, table, told);
   if (!comparison.gpu_layouts.empty()) {
     console.print(
-        "gpu: how many times fewer sectors of memory atomic additions touch on a graphics processor, "
-        "counted");
+        "gpu: factor by which atomic additions touch fewer sectors of memory on a graphics processor");
   }
-  console.print("{0} is not an order of your {1}. It is a synthetic {1} of its size that streams.", kBand,
-                comparison.is_matrix() ? "matrix" : "mesh");
+  console.print("{0} is not an order of your {1}: it is a synthetic {1} of its size, read front to back.",
+                kBand, comparison.is_matrix() ? "matrix" : "mesh");
 }
 
 void print_comparison_details(Console& console, const ComparisonReport& comparison) {

@@ -189,8 +189,8 @@ GpuReport gpu_report(const Mesh& mesh, const CsrGraph& graph, const GpuCard* car
 }
 
 std::string to_string(const GpuReport& report) {
-  if (is_empty(report)) return "nothing to compute on: it has no elements";
-  if (report.keeps()) return "in a good order for a graphics processor";
+  if (is_empty(report)) return "nothing to compute: the mesh has no elements";
+  if (report.keeps()) return "its order is good for a graphics processor";
   std::vector<std::string> changes;
   const auto add = [&](const char* of, double ratio) {
     const long percent = std::lround(100 * (1 / ratio - 1));

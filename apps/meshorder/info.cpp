@@ -278,7 +278,7 @@ void print_verdict(const Console& console, const InfoArguments& arguments, const
   const char* const without_advice =
       !found.has_elements && found.stored != nullptr
           ? "nothing to gain: no entry joins two rows, so every order is equally good"
-      : !found.has_elements ? "nothing to compute on: it has no elements"
+      : !found.has_elements ? "nothing to compute: the mesh has no elements"
       : fits_in_first_cache(found.graph)
           ? "nothing to gain: its data fit in a processor's first cache, in any order"
           : "too large to be judged by default; --measure runs the kernels, and --cache this predicts cache "
@@ -415,7 +415,7 @@ void add_info(CLI::App& subcommand) {
     gpu->excludes(subcommand.get_option(on_processors));
   }
   add_reading_options(subcommand);
-  add_common(subcommand, *arguments, std::string(kQuiet) + ": status 0 says that the file can be read");
+  add_common(subcommand, *arguments, std::string(kQuiet) + ": status 0 means that the file can be read");
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }
 

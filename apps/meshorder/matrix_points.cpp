@@ -52,7 +52,7 @@ void require_coordinates(const Mesh& mesh, const std::string& input, const std::
                          const std::vector<std::string>& others) {
   if (stored_matrix(mesh) == nullptr || has_places(mesh)) return;
   throw InvalidArgument(
-      fmt::format("{} has no coordinates, which the {} needs; give them by --points FILE, or use an order "
+      fmt::format("{} has no coordinates, which the {} needs; give them with --points FILE, or use an order "
                   "that needs none: {}",
                   input, by, join(others)));
 }

@@ -143,7 +143,7 @@ class Case {
   [[noreturn]] static void refuse_file(const fs::path& path) {
     if (!fs::exists(path)) throw InputError(path.string(), "no such folder", "give an OpenFOAM case");
     throw InputError(path.string(), "is a file, not an OpenFOAM case",
-                     "order a mesh file by meshorder order " + in_shell(path.string()));
+                     "order a mesh file with meshorder order " + in_shell(path.string()));
   }
 
   /// Throws InputError if a folder is within a case.
@@ -180,7 +180,7 @@ class Case {
                                name.find_first_not_of("0123456789", kProcessor.size()) == std::string::npos;
       if (!is_numbered || std::find(meshes_.begin(), meshes_.end(), name) != meshes_.end()) continue;
       throw InputError((folder_ / fmt::format("{}{}", kProcessor, meshes_.size())).string(),
-                       "there is no such folder, but " + name, "run decomposePar again");
+                       "the folder is missing, but " + name + " exists", "run decomposePar again");
     }
   }
 
@@ -188,7 +188,7 @@ class Case {
     for (const std::string& name : folders_in(folder_)) {
       if (!name.starts_with("processors")) continue;
       throw InputError((folder_ / name).string(), "holds the meshes of all processors in common files",
-                       "write separate files by decomposePar -fileHandler uncollated");
+                       "write separate files with decomposePar -fileHandler uncollated");
     }
     throw InputError(folder_.string(), "has no folder processor0", "run decomposePar first");
   }
@@ -196,7 +196,7 @@ class Case {
   [[noreturn]] void refuse_missing(const fs::path& poly_mesh) const {
     if (has(poly_mesh, "neighbour") || has(poly_mesh, "faces")) openfoam::refuse_missing(poly_mesh / "owner");
     if (!openfoam::is_case(folder_)) refuse_part(folder_);
-    std::string remedy = "make the mesh first, for instance by blockMesh";
+    std::string remedy = "make the mesh first, for instance with blockMesh";
     std::vector<std::string> regions = folders_in(poly_mesh.parent_path());
     std::erase_if(regions, [&](const std::string& region) {
       return !has_owners(poly_mesh.parent_path() / region / "polyMesh");

@@ -164,7 +164,7 @@ class Ordering {
     for (const std::string& line : lines_of_order(order_, groups_, spans_, stored_matrix(job_.mesh)))
       console_.print("{}", line);
     if (has_new_numbers(job_.mesh, order_, options_)) {
-      console_.print("{:<10} {}", "numbers", "of vertices and cells are new; --ids keep keeps the old ones");
+      console_.print("{:<10} {}", "numbers", "new for vertices and cells; --ids keep keeps the old ones");
     }
     console_.print("{:<10} {}", "wrote", arguments_.output);
     for (const std::string& file : map_files_) console_.print("{:<10} {}", "", file);

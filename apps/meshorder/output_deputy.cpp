@@ -79,7 +79,7 @@ std::vector<std::string> ask(int socket, std::span<const FinishedFile> files, st
   std::string answer;
   if (request.size() <= kLongestMessage && ::send(socket, request.data(), request.size(), MSG_NOSIGNAL) >= 0)
     answer = received(socket);
-  if (answer.empty()) throw Error(Code::io, "the outputs could not be put in place: try --trust");
+  if (answer.empty()) throw Error(Code::io, "the outputs could not be moved into place: try --trust");
   std::vector<std::string> notes;
   for (std::string_view rest = answer; !rest.empty();) {
     auto [kind, text] = next_part(rest);
@@ -180,7 +180,7 @@ FilePath OutputDeputy::allowed(const std::string& path) const {
       name.starts_with(fs::path(maps_).filename().string() + ".")) {
     return FilePath::derived(target);
   }
-  throw InputError(path, "is not an output of this command", "read the file by --trust if you trust it");
+  throw InputError(path, "is not an output of this command", "read the file with --trust if you trust it");
 }
 
 Scratch OutputDeputy::taken(const std::string& scratch, const FilePath& target) const {

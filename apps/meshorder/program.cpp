@@ -113,7 +113,7 @@ int run_and_report(const Program& program, int argc, char** argv) {
   } catch (const std::exception& error) {
     return report_failure(error.what(), kOwnFailure);
   } catch (...) {
-    return report_failure("an unknown failure", kOwnFailure);
+    return report_failure("unknown failure", kOwnFailure);
   }
 }
 

@@ -112,7 +112,8 @@ PrintedNumbers::PrintedNumbers(std::string option, std::string pattern)
     : option_(std::move(option)), pattern_(std::move(pattern)), expression_(compiled(option_, pattern_)) {
   if (expression_.mark_count() > 1)
     throw InvalidArgument(fmt::format(
-        "{} {}: it has several groups; one captures the number, write others as (?:…)", option_, pattern_));
+        "{} {}: it has several groups; keep the one that captures the number, and write the others as (?:…)",
+        option_, pattern_));
 }
 
 std::vector<double> PrintedNumbers::find(const std::vector<std::filesystem::path>& files) const {

@@ -258,7 +258,7 @@ class Trial {
     constexpr double kShort = 0.05;
     if (last_seconds_[0] >= kShort) return;
     notes_.push_back(
-        fmt::format("a run takes {}, much of it program start; a larger mesh gives a clearer result",
+        fmt::format("a run takes {}, much of it to start the program; a larger mesh gives a clearer result",
                     duration(last_seconds_[0])));
   }
 

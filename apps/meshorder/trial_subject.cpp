@@ -193,8 +193,7 @@ class TriedCase final : public TrialSubject {
     if (name == "auto" || name == kRenumberMesh || method_named(vertex_methods(), name)) return;
     refuse_order(
         name, name, vertex_methods(), kRenumberMesh,
-        fmt::format("cells have the vertex methods that meshorder methods lists, and {}, its default method",
-                    kRenumberMesh));
+        fmt::format("give a vertex method that meshorder methods lists, or {}, the default", kRenumberMesh));
   }
 
   bool make(TriedOrder& order, TrialFolder& folder, std::size_t number) const override {

@@ -59,7 +59,7 @@ void check_command(const TrialOptions& options, const TrialSubject& subject) {
   const bool is_new_or_empty =
       !fs::exists(options.keep) || (fs::is_directory(options.keep) && fs::is_empty(options.keep));
   if (!options.keep.empty() && !is_new_or_empty)
-    throw InputError(options.keep, "it is there already", "name a folder that is new or empty");
+    throw InputError(options.keep, "it already exists", "name a folder that is new or empty");
 }
 
 void run(const TryArguments& arguments) {

@@ -161,10 +161,10 @@ std::string trial_in_words(const TrialReport& report) {
     case TrialVerdict::faster: {
       const TimeRatio speedup = report.trials.speedup(*best);
       const std::optional<double> runs = runs_to_pay(report);
-      return fmt::format("{} runs {}× faster ({}) in {}; `{}` makes it{}", program,
-                         ratio_in_words(speedup.ratio), interval_in_words(speedup), report.orders[*best].name,
-                         report.orders[*best].made_by,
-                         runs ? fmt::format("; pays after {:.0f} run{}", *runs, *runs == 1 ? "" : "s") : "");
+      return fmt::format(
+          "{} runs {}× faster ({}) in {}; `{}` makes it{}", program, ratio_in_words(speedup.ratio),
+          interval_in_words(speedup), report.orders[*best].name, report.orders[*best].made_by,
+          runs ? fmt::format("; pays off after {:.0f} run{}", *runs, *runs == 1 ? "" : "s") : "");
     }
     case TrialVerdict::slower:
       return fmt::format("slower: {} runs fastest in the mesh's own order; {}", program,

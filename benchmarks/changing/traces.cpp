@@ -216,7 +216,7 @@ std::unique_ptr<Trace> make_trace(const std::string& name, Index count, Index st
   if (name == "refine") return std::make_unique<Refine>(count);
   if (name == "cut") return std::make_unique<Cut>(count, steps);
   if (name == "dam") return std::make_unique<Dam>(count);
-  throw std::invalid_argument("unknown trace '" + name + "'; known are stir, churn, refine, cut and dam");
+  throw std::invalid_argument("unknown trace '" + name + "'; known: stir, churn, refine, cut and dam");
 }
 
 }  // namespace meshorder

@@ -107,7 +107,7 @@ def test_products_load_offsets_columns_values_and_vector():
 
 def test_faults_are_named(cells):
     sizes: list[tuple[Any, str]] = [
-        (0, "between 2"), (1, "between 2"), (65535, "between 2 and 16383"), (2.5, "whole number"), (-1, "size"),
+        (0, "give 2 to"), (1, "give 2 to"), (65535, "give 2 to 16383"), (2.5, "whole number"), (-1, "size"),
     ]  # fmt: skip
     for size, words in sizes:
         with pytest.raises(InvalidArgument, match=words):

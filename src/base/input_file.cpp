@@ -18,7 +18,8 @@ namespace meshorder {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kRemedy = "put the file itself there, or allow its own folder by --allow-includes-from";
+constexpr const char* kRemedy =
+    "put the file itself there, or allow its own folder with --allow-includes-from";
 
 // O_NONBLOCK: opening does not wait for the writer of a pipe; the flag has no effect on files
 constexpr int kReading = O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
@@ -96,7 +97,7 @@ InputFile::InputFile(const fs::path& path) : path_(path), may_be_pipe_(true) {
 
 InputFile::InputFile(const fs::path& path, std::span<const fs::path> folders) : path_(path) {
   const std::optional<fs::path> real = real_path_below(path, folders);
-  if (!real) throw InputError(path.string(), "lies outside of the folder where it should be", kRemedy);
+  if (!real) throw InputError(path.string(), "is outside the folder where it should be", kRemedy);
   struct stat status {};
   if (::lstat(real->c_str(), &status) == 0 && !S_ISLNK(status.st_mode)) {
     if (const char* const kind = kind_of_unreadable(status.st_mode, false); kind != nullptr)

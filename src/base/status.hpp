@@ -43,7 +43,7 @@ mo_status status_of(const Work& work, std::string& message) noexcept {
   } catch (const std::exception& error) {
     return failure(MO_INTERNAL, error.what());
   } catch (...) {
-    return failure(MO_INTERNAL, "a failure of unknown kind");
+    return failure(MO_INTERNAL, "unknown failure");
   }
 }
 

@@ -195,7 +195,7 @@ std::string unknown_in_words(std::string_view kind, const std::string& word,
                              const std::vector<std::string>& names) {
   const std::string nearest = suggestion(word, names);
   return "unknown " + std::string(kind) + " '" + word + "'" +
-         (nearest.empty() ? "; known are " + join(names) : nearest);
+         (nearest.empty() ? "; known: " + join(names) : nearest);
 }
 
 }  // namespace meshorder

@@ -20,7 +20,7 @@ namespace meshorder {
 /// Returns "; did you mean 'order'?" if one of the names is spelt or begins almost like `word`; else "".
 std::string suggestion(const std::string& word, const std::vector<std::string>& names);
 
-/// Returns "unknown workload 'spring'; did you mean 'springs'?", or "unknown workload 'a'; known are …" if no
+/// Returns "unknown workload 'spring'; did you mean 'springs'?", or "unknown workload 'a'; known: …" if no
 /// name is near.
 std::string unknown_in_words(std::string_view kind, const std::string& word,
                              const std::vector<std::string>& names);

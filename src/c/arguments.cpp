@@ -48,7 +48,7 @@ bool is_given(const mo_in* array, const char* name) {
 void check_room(const mo_out* array, std::size_t count, const char* name) {
   if (array == nullptr) return;
   if (!std::cmp_equal(array->size, count)) {
-    fail(name, "room for " + std::to_string(array->size) + " numbers, must be for " + std::to_string(count));
+    fail(name, "the size is " + std::to_string(array->size) + ", must be " + std::to_string(count));
   }
   if (array->data == nullptr && count > 0) fail(name, "the data is null");
   check_alignment(array->data, array->type, name);

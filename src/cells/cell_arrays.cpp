@@ -156,7 +156,7 @@ void take_mixed(const CellsView& view, bool trusted, CellArrays& cells) {
       const std::size_t entries = cells.vertices.size();
       throw InvalidArgument("cells: the offsets go from " + std::to_string(offsets[0]) + " to " +
                             std::to_string(offsets[offsets.size() - 1]) + "; for " + std::to_string(entries) +
-                            " entries they go from " + std::to_string(view.base()) + " to " +
+                            " entries they must go from " + std::to_string(view.base()) + " to " +
                             std::to_string(entries + static_cast<unsigned>(view.base())));
     }
     const auto descent = std::is_sorted_until(cells.offsets.begin(), cells.offsets.end());
@@ -308,7 +308,7 @@ std::size_t vertex_count_of(const MeshView& mesh) {
   const std::size_t points = mesh.points.size();
   if (mesh.vertex_count == 0) {
     if (points == 0 && mesh.cells.size() > 0)
-      throw InvalidArgument("cells: there are no points and no vertex_count");
+      throw InvalidArgument("cells: neither points nor vertex_count are given");
     return points;
   }
   if (points != 0 && points != mesh.vertex_count) {

@@ -44,7 +44,7 @@ std::vector<ElementFacet> matched_facets(const std::vector<ElementFacet>& facets
 
 std::vector<ElementFacet> matched_facets(const CellArrays& cells, const CellSelection& elements) {
   if (cells.shapes.empty() && cells.size() > 0) {
-    throw InvalidArgument("cells: facets are known only if the shapes of the cells are known");
+    throw InvalidArgument("cells: facets need the shapes of the cells");
   }
   std::vector<ElementFacet> all;
   FacetsOfTypes facets_of;

@@ -114,8 +114,8 @@ Patches patches(const CellsView& cells, std::size_t vertex_count, int size, cons
                             " vertices are too large: a patch must hold two");
     }
     if (size < 2 || size > most) {
-      throw InvalidArgument("patches: " + std::to_string(size) + " cells each; between 2 and " +
-                            std::to_string(most) + " have local numbers of 16 bits");
+      throw InvalidArgument("patches: " + std::to_string(size) + " cells each; give 2 to " +
+                            std::to_string(most) + ", so that local numbers fit 16 bits");
     }
     Patches result{.size = size, .corners_per_cell = width};
     result.cells.resize(static_cast<std::size_t>(arrays.size()));

@@ -295,7 +295,7 @@ void require_memory_to_join(IncidenceRef rows, const JoinNames& names) {
       std::string(names.row) + " " + std::to_string(names.number_of ? names.number_of(longest) : longest) +
       " has " + std::to_string(most) + " " + names.members +
       ", each joined to all others: the graph would take " + size_text(bytes) + ", more than the limit of " +
-      size_text(limit) + "; " + names.remedy + ", or raise the limit on memory (--limit-memory)");
+      size_text(limit) + "; " + names.remedy + ", or raise the memory limit (--limit-memory)");
 }
 
 CsrGraph joined_vertices(IncidenceRef elements) {

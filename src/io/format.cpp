@@ -225,7 +225,7 @@ const Format& format_of(const std::filesystem::path& path) {
   const std::string extension = lower_case(without_piece_numbers(without_gz(path)).extension().string());
   if (openfoam::is_case(openfoam::case_folder(path))) {
     throw InputError(path.string(), "is an OpenFOAM case",
-                     "order its cells by meshorder openfoam " + openfoam::case_folder(path).string());
+                     "order its cells with meshorder openfoam " + openfoam::case_folder(path).string());
   }
   if (std::error_code code; extension.empty() && std::filesystem::is_directory(path, code)) {
     throw InputError(path.string(), "is a folder", "give a mesh file");
@@ -250,7 +250,7 @@ const Format& format_of(const std::filesystem::path& path) {
   if (const std::string nearest = suggestion(extension, known); !nearest.empty())
     throw InputError(path.string(), fault, nearest.substr(2));
   throw InputError(path.string(), fault,
-                   "known are " + join(known, std::string_view(" ")) +
+                   "known: " + join(known, std::string_view(" ")) +
                        "; the Python package and its command also take meshio's formats");
 }
 
@@ -266,7 +266,7 @@ const Format& output_format_of(const std::filesystem::path& path) {
   const Format& format = format_of(path);
   if (lower_case(without_gz(path).extension().string()) == ".pvtu") {
     throw InputError(path.string(), "lists pieces; one mesh cannot be written as such a list",
-                     "write a .vtu file, or pieces by `mpirun -n 4 meshorder order MESH --pieces FOLDER`");
+                     "write a .vtu file, or pieces with `mpirun -n 4 meshorder order MESH --pieces FOLDER`");
   }
   return format;
 }

@@ -236,7 +236,7 @@ Permutation write_mesh(const Mesh& mesh, std::ostream& stream, std::string_view 
   const Format& known = format_named(format);
   if (!known.single_file) {
     throw InvalidArgument("a mesh in the format '" + known.key() +
-                          "' is several files, which do not fit one stream");
+                          "' has several files, which cannot be written to one stream");
   }
   const MemoryFiles written = write_mesh_to_memory(mesh, format, "<stream>", notes);
   const std::string& bytes = written.files.front().bytes;

@@ -144,10 +144,9 @@ std::vector<Index> all_cells(const Mesh& mesh) { return index_range(0, mesh.cell
 std::vector<Index> cells_for(const Mesh& mesh, const Format& format, Notes& notes) {
   const std::vector<TypeCount> left_out = types_left_out(mesh, counted_types(mesh), format);
   for (const TypeCount& type : left_out) {
-    notes.push_back(
-        type.count == 1
-            ? fmt::format("{} is left out: {} has no place for it", in_words(type), format.name)
-            : fmt::format("{} are left out: {} has no place for them", in_words(type), format.name));
+    notes.push_back(type.count == 1
+                        ? fmt::format("{} is left out: {} cannot hold it", in_words(type), format.name)
+                        : fmt::format("{} are left out: {} cannot hold them", in_words(type), format.name));
   }
   return left_out.empty() ? all_cells(mesh) : cells_but(mesh, left_out);
 }
@@ -232,8 +231,8 @@ inline namespace v0_3 {
 std::vector<Index> keep_cells(Mesh& mesh, const KeepOptions& options) {
   constexpr std::array<std::string_view, 4> kNames{"points", "curves", "surfaces", "volumes"};
   if (options.dimension < -1 || options.dimension > 3) {
-    throw InvalidArgument(fmt::format("keep_cells: the dimension is {}; 0 to 3, or −1 for all, is possible",
-                                      options.dimension));
+    throw InvalidArgument(
+        fmt::format("keep_cells: the dimension is {}; it must be 0 to 3, or −1 for all", options.dimension));
   }
   check_mesh(mesh);
   const Format* const format = options.format.empty() ? nullptr : &format_named(options.format);

@@ -24,7 +24,7 @@ std::vector<Index> cells_for(const Mesh& mesh, const Format& format, Notes& note
 /// the sets and partial arrays that have no cells left. O(size of the mesh).
 void keep_cells_at(Mesh& mesh, const std::vector<Index>& kept, Notes& notes);
 
-/// Returns why a file of the format cannot hold all cells of a mesh: a type that the format has no place for,
+/// Returns why a file of the format cannot hold all cells of a mesh: a type that the format cannot hold,
 /// or a conflict of types. Returns an empty text if the file can hold all cells. O(cells).
 std::string fault_of_cells(const Mesh& mesh, const Format& format);
 

@@ -10,11 +10,11 @@ namespace {
 constexpr std::string_view kStructured = "is structured";
 constexpr std::string_view kGridOrder = "its order is fixed by the grid; nothing to reorder";
 constexpr std::string_view kByMeshio =
-    "the command of the Python package reads it by meshio (pip install meshio)";
-constexpr std::string_view kOneGrid = "save it as one .vtu, in ParaView by Append Datasets and Save Data";
+    "the command of the Python package reads it with meshio (pip install meshio)";
+constexpr std::string_view kOneGrid = "save it as one .vtu, in ParaView with Append Datasets and Save Data";
 
 constexpr std::array kOtherFormats{
-    OtherFormat{".vtp", "holds VTK's PolyData", "save it as .ply or .vtu, in ParaView by Save Data"},
+    OtherFormat{".vtp", "holds VTK's PolyData", "save it as .ply or .vtu, in ParaView with Save Data"},
     OtherFormat{".vtm", "lists several datasets", kOneGrid},
     OtherFormat{".vtmb", "lists several datasets", kOneGrid},
     OtherFormat{".pvd", "lists the steps of a time series", "give one of its .vtu files"},

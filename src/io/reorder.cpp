@@ -112,7 +112,7 @@ MeshOrder compute_order_in_file(const Mesh& mesh, const CsrGraph& graph, const R
 void check_holds_ids(const Format& format, Ids ids) {
   if (ids != Ids::keep || format.holds_ids) return;
   throw InvalidArgument(
-      fmt::format("reorder: {} numbers points and cells by their places; ids cannot be kept", format.name));
+      fmt::format("reorder: {} numbers points and cells by position; ids cannot be kept", format.name));
 }
 
 void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells,

@@ -8,12 +8,12 @@
 namespace meshorder {
 
 void note_array_unsupported(const DataArray& array, std::string_view format, Notes& notes) {
-  notes.push_back(fmt::format("the array '{}' on {} is not written: {} has no place for it", array.name,
+  notes.push_back(fmt::format("the array '{}' on {} is not written: {} cannot hold it", array.name,
                               to_string(array.association), format));
 }
 
 void note_set_unsupported(const EntitySet& set, std::string_view format, Notes& notes) {
-  notes.push_back(fmt::format("the set '{}' of {} is not written: {} has no place for it", set.name,
+  notes.push_back(fmt::format("the set '{}' of {} is not written: {} cannot hold it", set.name,
                               to_string(set.association), format));
 }
 
@@ -29,7 +29,7 @@ void note_filled(const DataArray& array, std::string_view filling, Notes& notes)
 
 void note_component_names_unsupported(const DataArray& array, std::string_view format, Notes& notes) {
   if (array.component_names.empty()) return;
-  notes.push_back(fmt::format("the names of the components of '{}' are not written: {} has no place for them",
+  notes.push_back(fmt::format("the names of the components of '{}' are not written: {} cannot hold them",
                               array.name, format));
 }
 
@@ -45,7 +45,7 @@ void note_ids_unsupported(const Mesh& mesh, std::string_view format, Notes& note
 void note_metadata_unsupported(const Mesh& mesh, std::string_view format, Notes& notes) {
   if (!mesh.format_metadata) return;
   for (const std::string& what : mesh.format_metadata->contents()) {
-    notes.push_back(fmt::format("not written ({} has no place for it): {}", format, what));
+    notes.push_back(fmt::format("not written ({} cannot hold it): {}", format, what));
   }
 }
 

@@ -7,12 +7,12 @@
 
 namespace meshorder {
 
-// Notes of writers on parts of a mesh that their format has no place for, worded alike for all formats.
+// Notes of writers on parts of a mesh that their format cannot hold, worded alike for all formats.
 
-/// Notes "the array 'stress' on cells is not written: OFF has no place for it".
+/// Notes "the array 'stress' on cells is not written: OFF cannot hold it".
 void note_array_unsupported(const DataArray& array, std::string_view format, Notes& notes);
 
-/// Notes "the set 'fixed' of vertices is not written: OFF has no place for it".
+/// Notes "the set 'fixed' of vertices is not written: OFF cannot hold it".
 void note_set_unsupported(const EntitySet& set, std::string_view format, Notes& notes);
 
 /// Notes "the set 'fixed' of vertices is not written: it has no members".

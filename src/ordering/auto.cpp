@@ -72,22 +72,24 @@ constexpr std::array kVertexRules{
 #endif
     Rule{.workloads = kForGpu,
          .method = "rcm",
-         .reason = "on a graphics processor about as fast as the best orders measured, and cheap"},
+         .reason = "about as fast as the best orders measured on a graphics processor, and cheap"},
     Rule{.kind = Kind::lattice,
          .method = "bfs",
-         .reason = "on lattices no order measured is faster, and it is cheap"},
+         .reason = "no order measured is faster on lattices, and it is cheap"},
     Rule{.kind = Kind::placed,
          .method = "hilbert-fronts",
          .reason =
-             "within a few per cent of the best order measured, at the cost of a sort of the coordinates "
-             "and a pass over the edges"},
-    Rule{.workloads = kForElements,
-         .least_vertices = 100'000,
-         .method = "spectral-fronts",
-         .reason = "this graph has no coordinates; the best order measured for elements that needs none"},
+             "within a few per cent of the best order measured, for one sort of the coordinates and one pass "
+             "over the edges"},
+    Rule{
+        .workloads = kForElements,
+        .least_vertices = 100'000,
+        .method = "spectral-fronts",
+        .reason = "this graph has no coordinates, and no order measured without them is better for elements"},
     Rule{.method = "bfs",
-         .reason = "this graph has no coordinates; no order measured that needs none makes products faster, "
-                   "and it is cheap"},
+         .reason =
+             "this graph has no coordinates, no order measured without them makes products faster, and it is "
+             "cheap"},
 };
 
 bool fits(const Rule& rule, Index vertices, Kind kind, Workload workload) {
@@ -151,10 +153,12 @@ MethodChoice choose_vertex_method(const VertexInput& input, Workload workload) {
 MethodChoice choose_element_method(const ElementInput& /*input*/, Workload workload) {
   if (workload == Workload::gpu) {
     return {"lexmax",
-            "one sort by the new numbers of their vertices: the threads of a warp add near each other"};
+            "one sort by the new numbers of the vertices; the threads of a warp then add to places near each "
+            "other"};
   }
-  return {"lexmax",
-          "one sort by the new numbers of their vertices, and no order measured computes faster on it"};
+  return {
+      "lexmax",
+      "one sort by the new numbers of the vertices, and kernels run no faster in any other order measured"};
 }
 
 Order auto_vertices(const VertexInput& input, const OrderOptions& options) {

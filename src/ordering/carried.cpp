@@ -97,7 +97,7 @@ VertexChanges changes_of(const IndexView& previous, Index size, Index count) {
   if (previous.empty()) {
     if (size == 0) changes.removed = count;
     if (size > 0 && count > 0 && size != count) {
-      throw InvalidArgument("previous: is missing; there are " + std::to_string(size) +
+      throw InvalidArgument("previous: it is missing; there are " + std::to_string(size) +
                             " vertices, and the last update had " + std::to_string(count));
     }
     return changes;

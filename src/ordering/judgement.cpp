@@ -32,8 +32,8 @@ std::string with_one_digit(double number) { return with_digits(number, 1); }
 
 std::string sentence(const std::string& what, const std::string& old_figure, std::string_view method,
                      const std::string& new_figure) {
-  return std::string(method) + " is no better: " + what + " is " + old_figure + " as it is and " +
-         new_figure + " by " + std::string(method);
+  return std::string(method) + " is no better: " + what + " is " + old_figure + " in the old order and " +
+         new_figure + " in the new one";
 }
 
 /// Returns the stride at which warps of `threads` threads are counted: 1 if they are few.

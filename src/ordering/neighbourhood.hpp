@@ -26,9 +26,9 @@ class Neighbourhood : public Polymorphic {
   [[nodiscard]] virtual double most_span(double fresh, double slack) const { return fresh * (1 + slack); }
   /// Words for the reason of an update: `too_far` if `span_log2` exceeds `most_span`, else `near_enough`.
   [[nodiscard]] virtual std::string_view too_far() const {
-    return "neighbours have come apart: mean log2 span";
+    return "neighbours are too far apart: the mean log2 span is";
   }
-  [[nodiscard]] virtual std::string_view near_enough() const { return "neighbours are as near"; }
+  [[nodiscard]] virtual std::string_view near_enough() const { return "neighbours are as close"; }
   /// Returns the neighbours of the given vertices, which must ascend.
   [[nodiscard]] virtual NeighbourRows rows_of(std::span<const Index> vertices) const = 0;
   /// Orders the vertices by that method.
@@ -84,10 +84,10 @@ class PointNeighbourhood : public Neighbourhood {
   /// Returns `fresh` plus `slack` times log₂ n, since `fresh` is 0 for the order along the curve itself.
   [[nodiscard]] double most_span(double fresh, double slack) const override;
   [[nodiscard]] std::string_view too_far() const override {
-    return "points have left their places on the curve: mean log2 distance";
+    return "points are too far from their places on the curve: the mean log2 distance is";
   }
   [[nodiscard]] std::string_view near_enough() const override {
-    return "points are as near their places on the curve";
+    return "points are as close to their places on the curve";
   }
   [[nodiscard]] NeighbourRows rows_of(std::span<const Index> vertices) const override;
   [[nodiscard]] Order order_by(std::string_view method, const OrderOptions& options) override;

@@ -122,7 +122,7 @@ class Reorderer::Inside {
     const auto end = memory.method.find('\n');
     if (end == std::string::npos) throw InvalidArgument("state: it is cut off or damaged");
     if (memory.method.substr(0, end) != options_.method) {
-      throw InvalidArgument("state: of the method '" + memory.method.substr(0, end) + "', not '" +
+      throw InvalidArgument("state: it is of the method '" + memory.method.substr(0, end) + "', not '" +
                             options_.method + "'");
     }
     memory.method.erase(0, end + 1);
@@ -165,7 +165,7 @@ class Reorderer::Inside {
   [[nodiscard]] std::string reason_to_renew(const Neighbourhood& hood, const ReordererState& memory,
                                             double span) const {
     if (span > hood.most_span(memory.fresh_span, options_.slack)) {
-      return std::string(hood.too_far()) + " " + in_words(span) + ", " + in_words(memory.fresh_span) +
+      return std::string(hood.too_far()) + " " + in_words(span) + ", but was " + in_words(memory.fresh_span) +
              " in the last fresh order";
     }
     if (memory.since < interval(memory)) return "";
@@ -177,8 +177,7 @@ class Reorderer::Inside {
     const bool is_warm = !next.vector.empty() && !is_first;
     double& last_seconds = is_warm ? next.warm_seconds : next.fresh_seconds;
     if (!is_first && last_seconds > options_.budget_seconds) {
-      update.reason +=
-          "; a new order took " + in_words(last_seconds) + " s the last time, more than the budget";
+      update.reason += "; the last new order took " + in_words(last_seconds) + " s, more than the budget";
       update.complete = false;
       return keep(update, std::move(carried), carried_span);
     }

@@ -56,8 +56,9 @@ MachineChoice choose_machine(std::string_view name, bool all_threads) {
   for (const ShippedMachine& machine : kShipped) {
     if (machine.name != asked) continue;
     if (all_threads && thread_count() > 1) {
-      throw InvalidArgument("the costs of '" + asked +
-                            "' are those of one thread; a calibration of this machine knows all its threads");
+      throw InvalidArgument(
+          "the costs of '" + asked +
+          "' are those of one thread; calibrate this machine to predict for all its threads");
     }
     choice.name = asked;
     choice.model = machine.costs();

@@ -20,10 +20,9 @@ namespace {
 /// Throws InvalidArgument unless the mesh has cells that the kernels take.
 void check_kernels_run(const Mesh& mesh) {
   if (CellSimplices(mesh).size() > 0) return;
-  throw InvalidArgument(
-      stored_matrix(mesh) != nullptr
-          ? "advise: the matrix has no entries off the diagonal"
-          : "advise: the mesh has no lines, surfaces or volumes, which the kernels work on");
+  throw InvalidArgument(stored_matrix(mesh) != nullptr
+                            ? "advise: the matrix has no entries off the diagonal"
+                            : "advise: the mesh has no lines, surfaces or volumes, which the kernels need");
 }
 
 /// Throws InvalidArgument if a method needs coordinates and the mesh is a matrix without them.

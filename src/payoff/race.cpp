@@ -31,12 +31,12 @@ std::string reason_for(const Race& race) {
   if (is_predicted(race)) {
     if (!race.winner) {
       return fmt::format(
-          "no order is predicted to be faster than the file's by more than the error of predictions, for {}",
+          "for {}, no order is predicted to be faster than the file's by more than the error of predictions",
           race.advice.machine);
     }
     return fmt::format(
-        "predicted to be {:.2f} times as fast as the file's, and no other order to be faster by more than "
-        "the error of predictions, for {}",
+        "predicted to be {:.2f} times as fast as the file's order for {}; no other order is predicted to be "
+        "faster by more than the error of predictions",
         race.factors[*race.winner], race.advice.machine);
   }
   if (!race.winner) {
@@ -45,9 +45,9 @@ std::string reason_for(const Race& race) {
         timed);
   }
   return fmt::format(
-      "none of {} orders timed here is faster by more than the variation of the times; {:.2f} times as fast "
-      "as the file's",
-      timed, race.factors[*race.winner]);
+      "{:.2f} times as fast as the file's order; none of {} orders timed here is faster by more than the "
+      "variation of the times",
+      race.factors[*race.winner], timed);
 }
 
 }  // namespace

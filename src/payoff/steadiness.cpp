@@ -38,7 +38,7 @@ std::string reason_to_doubt(const Steadiness& steadiness) {
   std::vector<std::string> signs;
   if (steadiness.waiting > kMostWaiting) {
     signs.push_back(
-        fmt::format("other programs had the processor for {:.0f} % of the time", 100 * steadiness.waiting));
+        fmt::format("other programs used the processor for {:.0f} % of the time", 100 * steadiness.waiting));
   }
   if (steadiness.pace > kMostPace) {
     signs.push_back(fmt::format("its speed changes: the same arithmetic took {:.0f} % longer than at best",

@@ -92,8 +92,8 @@ std::string runs_of(const Advice& advice, Workload workload) {
 std::string in_doubt(const std::string& slower, const std::string& on, const char* than,
                      const std::string& command) {
   return fmt::format(
-      "as it is, {}{} than {} (measured here while the machine was busy: the amount is in doubt); `{}` gives "
-      "a faster order",
+      "as it is, {}{} than {} (measured here while the machine was busy: the amount is uncertain); `{}` "
+      "gives a faster order",
       slower, on, than, command);
 }
 
@@ -104,14 +104,14 @@ std::string of_products(const Advice& advice) {
   const KernelAdvice& product = advice.kernels.front();
   if (product.factor <= 1) {
     return fmt::format(
-        "nothing to gain: products take no less time in another order, beyond the uncertainty of {}",
+        "nothing to gain: products are no faster in another order, within the uncertainty of {}",
         measured ? "the measurement" + on : "the prediction" + of_machine);
   }
   const Candidate& candidate = advice.candidates[product.candidate];
   if (is_vague(advice, 0, product.factor))
     return in_doubt("products take longer", on, "they could", command_for(candidate, true));
   return fmt::format(
-      "as it is, products take {:.1f}× as long{} as they could{}; `{}` takes {} and pays after {}",
+      "as it is, products take {:.1f}× as long{} as they could{}; `{}` takes {} and pays off after {}",
       product.factor, on, measured ? " (measured here)" : " (predicted" + of_machine + ")",
       command_for(candidate, true), duration(candidate.order_seconds), times(product.runs_to_pay, "product"));
 }
@@ -161,7 +161,7 @@ std::string comparison_in_words(const Advice& advice, Workload workload) {
                          order_in_words(advice.candidates[advice.kernels[k].candidate]));
     }
     return fmt::format(
-        "nothing to gain: {} no faster in these orders than in the file's own, beyond the uncertainty of the "
+        "nothing to gain: {} no faster in these orders than in the file's own, within the uncertainty of the "
         "measurement{}",
         runs, on_threads(advice.threads));
   }
@@ -170,16 +170,16 @@ std::string comparison_in_words(const Advice& advice, Workload workload) {
   const std::string order = order_in_words(candidate, advice.is_matrix);
   if (is_vague(advice, told, factor)) {
     return fmt::format(
-        "{} faster{} in {} than in the file's own order (measured while the machine was busy: the amount is "
-        "in doubt)",
+        "{} faster{} in {} than in the file's own order (measured while the machine was busy: the amount "
+        "is uncertain)",
         runs, on_threads(advice.threads), order);
   }
   const double steps = steps_to_pay(advice, *best);
   std::string pays;
   if (told != Workload::all && !advice.is_matrix) {
-    pays = " and pays after " + runs_to_pay(advice, candidate, kernel_of(told));
+    pays = " and pays off after " + runs_to_pay(advice, candidate, kernel_of(told));
   } else if (steps > 0) {
-    pays = " and pays after " + times(steps, advice.is_matrix ? "product" : "time step");
+    pays = " and pays off after " + times(steps, advice.is_matrix ? "product" : "time step");
   }
   return fmt::format("{} {:.2f}× faster{} in {} than in the file's own order{}; it takes {}{}", runs, factor,
                      on_threads(advice.threads), order, is_mean ? ", in their geometric mean" : "",
@@ -197,7 +197,7 @@ std::string to_string(const Advice& advice) {
   const std::size_t k = worst(kernels);
   if (!taken) {
     return fmt::format(
-        "nothing to gain: no kernel runs faster in another order, beyond the uncertainty of {}",
+        "nothing to gain: no kernel runs faster in another order, within the uncertainty of {}",
         measured ? "the measurement" + on_threads(advice.threads) : "the prediction" + of_machine);
   }
   const Candidate& candidate = advice.candidates[*taken];

@@ -92,7 +92,7 @@ def test_an_unknown_machine_gets_the_nearest_name(here, monkeypatch):
     for command in "info", "compare":
         assert "unknown machine 'zen6'; did you mean 'zen3'?" in here.fails(command, "mesh.node", "--machine", "zen6")
     monkeypatch.setenv("MESHORDER_MACHINE", "cray")
-    assert "unknown machine 'cray'; known are this, zen3" in here.fails("info", "mesh.node")
+    assert "unknown machine 'cray'; known: this, zen3" in here.fails("info", "mesh.node")
 
 
 def test_the_first_prediction_calibrates_and_the_next_one_does_not(here):
@@ -123,7 +123,7 @@ def test_costs_of_all_threads_that_are_not_known_are_refused(here, stored):
     content = json.loads(stored.read_text())
     if content["threads"] > 1:
         fault = here.fails("info", "mesh.node", "--machine", "zen3", "--all-threads")
-        assert "the costs of 'zen3' are those of one thread; a calibration of this machine knows all its threads" in fault
+        assert "the costs of 'zen3' are those of one thread; calibrate this machine to predict for all its threads" in fault
     stored.write_text(json.dumps({**content, "threads": content["threads"] + 1}))
     fault = here.fails("order", "mesh.node", "-o", "out.node", "--predict", "--all-threads")
     assert f"was calibrated on {content['threads'] + 1} threads, and now there are" in fault

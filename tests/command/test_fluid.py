@@ -40,7 +40,7 @@ def test_says_where_the_time_went(command, pool):
     words = command.ok("simulate", pool()).stdout
     assert "405 particles 0.125 m apart" in words
     assert "particles hilbert, again every 2 steps, tetrahedra lexmax in each step" in words
-    assert "triangulation" in words and "3 times again" in words
+    assert "triangulation" in words and "3 more times" in words
     result = command.json("simulate", pool())
     assert result["mesh"] is None and result["steps"] == 6 and result["fresh_orders"] == 3
     assert len(result["time_steps"]) == 6 and max(result["time_steps"]) <= 0.02

@@ -23,7 +23,7 @@ def test_a_scrambled_grid_gets_the_line_that_orders_it(command, scrambled):
     assert sum(row.startswith(("additions, ", "two passes, ", "product, ")) for row in rest) == 7
     command.ok(*line.split()[4:])
     verdict, *reasons = command.ok("info", "ordered-scrambled.node", "--gpu").stdout.splitlines()
-    assert verdict == "ordered-scrambled.node: in a good order for a graphics processor"
+    assert verdict == "ordered-scrambled.node: its order is good for a graphics processor"
     assert reasons[0].startswith("rcm is no better: ") and reasons[1].startswith("lexmax is no better: ")
 
 
@@ -111,7 +111,7 @@ def test_elements_of_several_sizes_are_said_not_to_be_counted(command, tmp_path)
 
 def test_points_alone_have_nothing_to_count(command, tmp_path):
     (tmp_path / "points.vtk").write_text(VTK + "CELLS 2 4\n1 0\n1 8\nCELL_TYPES 2\n1 1\n")
-    assert command.ok("info", "points.vtk", "--gpu").stdout.startswith("points.vtk: nothing to compute on: it has no elements")
+    assert command.ok("info", "points.vtk", "--gpu").stdout.startswith("points.vtk: nothing to compute: the mesh has no elements")
     assert command.json("info", "points.vtk", "--gpu")["gpu"]["kernels"] == {}
 
 
@@ -127,7 +127,7 @@ def test_compare_counts_each_order(command, scrambled):
     assert head.split("cost")[1].endswith("gpu padded  gpu gathered ")
     row = next(row for row in text.splitlines() if row.startswith("rcm"))
     assert f"{own / rcm:.2f}*" in row
-    assert "gpu: how many times fewer sectors" in text
+    assert "gpu: factor by which atomic additions touch fewer sectors" in text
 
 
 def test_kernels_of_a_processor_do_not_judge_for_gpus(command, scrambled):

@@ -47,8 +47,8 @@ def test_a_gmsh_mesh_with_faces_and_points_becomes_vega_and_its_maps_fit(command
     done = command.ok("order", "a.msh", "-o", "b.veg", "--maps", "m")
     notes = [line for line in done.stderr.splitlines() if "left out" in line]
     assert [note.split(": ", 1)[1].removeprefix("warning: ") for note in notes] == [
-        "1 vertex is left out: Vega has no place for it", "2 lines are left out: Vega has no place for them",
-        "12 triangles are left out: Vega has no place for them",
+        "1 vertex is left out: Vega cannot hold it", "2 lines are left out: Vega cannot hold them",
+        "12 triangles are left out: Vega cannot hold them",
         "the set 'anchor' is left out with all its cells (likewise 'edge', 'skin')"]
     points, tets = vega(tmp_path / "b.veg")
     kept = numpy.load(tmp_path / "m.cells.kept.npy")

@@ -14,7 +14,7 @@ import zlib
 import conftest
 import pytest
 
-REMEDY = "if you trust the file, raise the limit on memory (--limit-memory)"
+REMEDY = "if you trust the file, raise the memory limit (--limit-memory)"
 TETRAHEDRON = "*VERTICES\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n*ELEMENTS\nTET\n1 4 0\n1 1 2 3 4\n"
 GIGABYTE = 1 << 30
 
@@ -89,7 +89,7 @@ def test_datasets_of_values_that_are_not_there(tmp_path):
         for name, shape in (("p", (points, 3)), ("u", (points,))):
             file.create_dataset(name, shape=shape, dtype="f8", chunks=shape, compression="gzip")[...] = 0
     (tmp_path / "a.xdmf").write_text(XDMF.format(10**12, "HDF", "a.h5:/none", ""))
-    assert "claims 3000000000000 values, but only 0 bytes are there" in refused(tmp_path, "info", "a.xdmf")
+    assert "claims 3000000000000 values, but only 0 bytes are stored" in refused(tmp_path, "info", "a.xdmf")
     array = '<Attribute Name="a{}" Center="Node"><DataItem Dimensions="{}" Format="HDF">a.h5:/u</DataItem></Attribute>\n'
     arrays = "".join(array.format(k, points) for k in range(400))
     (tmp_path / "b.xdmf").write_text(XDMF.format(points, "HDF", "a.h5:/p", arrays))
@@ -166,7 +166,7 @@ def test_includes_need_permission(command, tmp_path):
     (tmp_path / "mesh" / "a.veg").write_text(TETRAHEDRON + "*INCLUDE ../other/material.txt\n")
     line = command.fails("order", "mesh/a.veg", "-o", "b.veg")
     assert line == ("meshorder: mesh/a.veg:11: the included file '../other/material.txt' is not in the mesh's folder; put "
-                    "it below the mesh's folder, or allow its own by --allow-includes-from")
+                    "it below the mesh's folder, or allow its own with --allow-includes-from")
     assert not (tmp_path / "b.veg").exists()
     command.ok("order", "mesh/a.veg", "-o", "b.veg", "--allow-includes-from", "mesh", "--allow-includes-from", "other")
     assert "soft" in (tmp_path / "b.veg").read_text()

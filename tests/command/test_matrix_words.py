@@ -83,7 +83,7 @@ def test_a_matrix_is_described_in_its_words(command, cube):
     assert f"\nbandwidth    {far:,}\n" in text
     assert "1 component\n" in text and "blocks" not in text
     assert "Entries by their distance from the diagonal" in text and "Predicted for each product" in text
-    assert text.startswith("a.mtx: nothing to gain: products take ")
+    assert text.startswith("a.mtx: nothing to gain: products are ")
     for word in ("vertices", "vertex", "cells", "elements", "element force", "assembly", "springs", "time step", "mesh",
                  "coordinates", "on entries"):
         assert word not in text.replace("meshorder", "") + done.stderr, word
@@ -204,7 +204,7 @@ def test_a_race_is_of_products(command, cube, option):
 def test_orders_by_coordinates_are_refused_without_them(command, cube, tmp_path, arguments):
     line = command.fails(*arguments)
     assert f"{arguments[1]} has no coordinates, which the order '" in line
-    assert "give them by --points FILE" in line and ", rcm, bfs" in line
+    assert "give them with --points FILE" in line and ", rcm, bfs" in line
     assert "hilbert," not in line.split("needs none: ")[1]
     assert not list(tmp_path.glob("out*"))
 

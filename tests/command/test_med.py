@@ -238,7 +238,7 @@ def test_a_file_of_meshio_stays_the_same_mesh_to_it(command):
     by_meshio(command.folder / "old.med")
     done = command.ok("order", "old.med", "-o", "new.med", "--vertices", "scrambled", "--elements", "scrambled",
                       "--maps", "maps")
-    assert "numbered as in meshio" in done.stderr
+    assert "the nodes of volumes have the sequence of meshio" in done.stderr
     old, new = (meshio.read(command.folder / name) for name in ("old.med", "new.med"))
     place = numpy.load(command.folder / "maps.vertices.old_to_new.npy")
     assert (new.points[place] == old.points).all()

@@ -196,7 +196,7 @@ def test_decomposed_cases(command, case):
         assert len(foam_cases.read_labels(case / processor / "constant" / "cellOrder")) == n
     assert not (case / "constant" / "cellOrder").exists()
     shutil.copytree(case / "processor1", case / "processor3")
-    assert "processor2: there is no such folder, but processor3" in command.fails("openfoam", "case", "--parallel")
+    assert "processor2: the folder is missing, but processor3 exists" in command.fails("openfoam", "case", "--parallel")
     shutil.rmtree(case / "processor3")
     text = command.ok("openfoam", "case", "--parallel").stdout
     assert "processor0   120 cells, rcm (auto): band " in text and "processor1   6 cells, " in text
@@ -208,7 +208,7 @@ def test_decomposed_cases(command, case):
         shutil.rmtree(case / name)
     assert command.fails("openfoam", "case", "--parallel").endswith("run decomposePar first")
     (case / "processors2").mkdir()
-    assert command.fails("openfoam", "case", "--parallel").endswith("by decomposePar -fileHandler uncollated")
+    assert command.fails("openfoam", "case", "--parallel").endswith("with decomposePar -fileHandler uncollated")
 
 
 def test_faults_leave_nothing_behind(command, case):
@@ -234,14 +234,14 @@ def test_faults_leave_nothing_behind(command, case):
         message = command.fails("openfoam", "case")
         assert message.endswith(f"polyMesh/{name}: is missing, but a mesh of OpenFOAM needs it; restore it, or make the mesh again")
     shutil.rmtree(case / "constant" / "polyMesh")
-    assert command.fails("openfoam", "case").endswith("make the mesh first, for instance by blockMesh")
+    assert command.fails("openfoam", "case").endswith("make the mesh first, for instance with blockMesh")
 
 
 def test_cases_that_contradict_themselves_are_refused(command, case):
     mesh = case / "constant" / "polyMesh"
     before = foam_cases.folder_files(case)
     (mesh / "boundary").write_text((mesh / "boundary").read_text().replace("nFaces 148", "nFaces 147"))
-    assert "boundary: the patches cover the faces" in command.fails("openfoam", "case")
+    assert "boundary: the patches cover faces" in command.fails("openfoam", "case")
     assert foam_cases.folder_files(case) == before
 
 
@@ -249,10 +249,10 @@ def test_other_paths_than_a_case(command, case, tmp_path):
     for path in ("case/constant/polyMesh", "case/constant", "case/system"):
         assert command.fails("openfoam", path) == (
             f"meshorder: {path}: is a folder of an OpenFOAM case; give the case: meshorder openfoam case")
-    assert command.fails("report", "case").endswith("order its cells by meshorder openfoam case")
+    assert command.fails("report", "case").endswith("order its cells with meshorder openfoam case")
     (tmp_path / "wing.su2").write_text("NDIME= 2\n")
     assert command.fails("openfoam", "wing.su2").endswith(
-        "wing.su2: is a file, not an OpenFOAM case; order a mesh file by meshorder order wing.su2")
+        "wing.su2: is a file, not an OpenFOAM case; order a mesh file with meshorder order wing.su2")
 
 
 def test_more_processors_than_open_files(command, case):
@@ -278,7 +278,7 @@ def test_an_empty_processor_mesh_has_an_empty_map(command, case):
 
 def test_other_subcommands_name_it(command, case):
     for line in ("info case", "order case -o a.vtu", "compare case/case.foam", "info case/case.foam"):
-        assert command.fails(*line.split()).endswith("is an OpenFOAM case; order its cells by meshorder openfoam case")
+        assert command.fails(*line.split()).endswith("is an OpenFOAM case; order its cells with meshorder openfoam case")
     (case / "case.foam").touch()
     assert command.json("openfoam", "case/case.foam")["case"] == "case"
 

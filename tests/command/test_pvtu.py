@@ -124,7 +124,7 @@ def second_piece(**changes):
     (listing(["../secret.vtu"]), ["secret.vtu", "not in the folder"]),
     (listing(["all.pvtu"]), ["all.pvtu", "UnstructuredGrid"]),
     (lambda folder: (folder / "p1.vtu").write_text("<VTKFile"), ["p1.vtu"]),
-    (lambda folder: write_pieces(folder, moved=0.5), ["all.pvtu", "the global id 1 has two places"]),
+    (lambda folder: write_pieces(folder, moved=0.5), ["all.pvtu", "the global id 1 has two positions"]),
     (second_piece(cell_id=0), ["all.pvtu", "two cells have the global id 0"]),
     (second_piece(ids=[-1, 2, 3, 4]), ["all.pvtu", "a point has the global id -1"]),
     (second_piece(no_heights=True), ["all.pvtu", "'height' is missing in a piece"]),

@@ -210,7 +210,7 @@ def test_it_stops_in_good_order_and_goes_on(tmp_path):
     if process.returncode == 0:
         pytest.skip("it was done before it could be stopped")
     assert process.returncode == 130, stderr
-    assert "resumes from there" in stderr
+    assert "continues from there" in stderr
     assert (tmp_path / "study" / "report.html").exists()
     kept = results_of(tmp_path / "study")["scenarios"][0]["orders"][0]["runs"]
     result = command.json(*arguments)["results"]

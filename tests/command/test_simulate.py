@@ -404,7 +404,7 @@ def test_errors_name_the_file_and_the_place(command, tmp_path):
     assert "falling, constrained, stretch, unsquash, bowl, bounce" in command.fails("simulate", "fallen")
     assert "factors its matrix" in command.fails("simulate", "bounce", "--preconditioner", "jacobi")
     assert "--list" in command.fails("simulate")
-    assert "known are jacobi" in command.fails("simulate", "falling", "--preconditioner", "ilu")
+    assert "known: jacobi" in command.fails("simulate", "falling", "--preconditioner", "ilu")
     assert "double, single" in command.fails("simulate", "falling", "--precision", "half")
     command.fails("simulate", "falling", "--order", "rcm", "--vertices", "rcm")
     command.fails("simulate", "falling", "--steps", "0")

@@ -100,7 +100,7 @@ def test_tuned_kernels_are_measured_only(command, scrambled):
     assert result["kernel_set"] == "tuned" and result["as_it_is"]["predicted_milliseconds"] is None
     assert command.json("info", scrambled, "--measure")["verdict"]["kernel_set"] == "plain"
     assert "give --measure, too" in command.fails("info", scrambled, "--kernels", "tuned")
-    assert "unknown kernels 'fast'; known are plain, tuned" in command.fails("info", scrambled, "--kernels", "fast")
+    assert "unknown kernels 'fast'; known: plain, tuned" in command.fails("info", scrambled, "--kernels", "fast")
 
 
 def test_predictions_are_the_same_on_every_run(command, scrambled):

@@ -233,7 +233,7 @@ BROKEN = {
     "'/VTKHDF/Points' has the shape (81)": replace("Points", numpy.zeros(81)),
     "has a coordinate of point 5 (counted from 0) that is not finite": put("Points", (5, 1), numpy.nan),
     "'/VTKHDF/Points' is reached through '/VTKHDF/Points', a link to another file": link,
-    "'/VTKHDF/Points' claims 81 values, but only 0 bytes are there": claim("Points", (27, 3), "f8"),
+    "'/VTKHDF/Points' claims 81 values, but only 0 bytes are stored": claim("Points", (27, 3), "f8"),
     "'/VTKHDF/Offsets' is missing": remove("Offsets"),
     "'/VTKHDF/Offsets' has the shape (52); 53 rows of 1 are needed":
         lambda group: replace("Offsets", group["Offsets"][1:])(group),
@@ -278,7 +278,7 @@ def test_a_file_that_is_cut_short_is_one_line(command, tmp_path):
     assert [file.name for file in tmp_path.iterdir()] == ["a.vtkhdf"]
 
 
-def test_claims_count_against_the_limit_on_memory(command, tmp_path):
+def test_claims_count_against_the_memory_limit(command, tmp_path):
     path = write(tmp_path / "a.vtkhdf")
     with h5py.File(path, "a") as file:
         # zeros compress well

@@ -94,12 +94,13 @@ TEST(Auto, JudgesByTheUse) {
   const Permutation columns = order_graph("rcm", {graph, {}}).permutation;
   EXPECT_EQ(reason_to_keep(graph, columns, "rcm", Workload::bandwidth), "");
   EXPECT_EQ(reason_to_keep(graph, as_is, "rcm", Workload::bandwidth),
-            "rcm is no better: the bandwidth is 40 as it is and 40 by rcm");
+            "rcm is no better: the bandwidth is 40 in the old order and 40 in the new one");
   EXPECT_EQ(reason_to_keep(graph, as_is, "hilbert", Workload::all),
-            "hilbert is no better: the mean edge span is 20.4 as it is and 20.4 by hilbert");
+            "hilbert is no better: the mean edge span is 20.4 in the old order and 20.4 in the new one");
   // the factor of a path has only the path's entries
   EXPECT_EQ(reason_to_keep(test::path(50), Permutation::identity(50), "metis-nd", Workload::fill),
-            "metis-nd is no better: the number of entries in the factor is 49 as it is and 49 by metis-nd");
+            "metis-nd is no better: the number of entries in the factor is 49 in the old order and 49 in the "
+            "new one");
   if (!is_known("metis-nd")) return;
   const Permutation dissected = order_graph("metis-nd", {graph, {}}).permutation;
   EXPECT_EQ(reason_to_keep(graph, dissected, "metis-nd", Workload::fill), "");
@@ -137,8 +138,8 @@ TEST(Auto, KeepsElementsThatItWouldNotPlaceBetter) {
   EXPECT_EQ(order.method.name, "original");
   EXPECT_EQ(
       order.method.reason,
-      "lexmax is no better: the mean number of vertices that 64 consecutive elements use is 63.5 as it is "
-      "and 63.5 by lexmax");
+      "lexmax is no better: the mean number of vertices that 64 consecutive elements use is 63.5 in the old "
+      "order and 63.5 in the new one");
   // a method that the user names is applied all the same
   EXPECT_FALSE(order_incidence("lexmax", {elements, vertices, {}, {}}).permutation.is_identity());
 }
@@ -217,8 +218,9 @@ TEST(Auto, JudgesLargeGraphsByTheirFirstTouches) {
   const Permutation hilbert = order_graph("hilbert", {graph, points}).permutation;
   const CsrGraph along = renumbered(graph, hilbert.old_to_new());
   for (const Workload use : {Workload::all, Workload::spmv, Workload::springs}) {
-    EXPECT_THAT(reason_to_keep(graph, hilbert, "hilbert", use),
-                testing::HasSubstr("lines that a sweep first reads out of order is 0.00 as it is and 0."));
+    EXPECT_THAT(
+        reason_to_keep(graph, hilbert, "hilbert", use),
+        testing::HasSubstr("lines that a sweep first reads out of order is 0.00 in the old order and 0."));
     EXPECT_EQ(reason_to_keep(along, hilbert.inverse(), "rows", use), "");
   }
 }

@@ -79,7 +79,7 @@ TEST(Carried, RefusesWhatDoesNotFit) {
   EXPECT_EQ(refused({0, 1, -2}, 3, 3), "previous: entry 2 is -2, outside -1 … 2");
   EXPECT_EQ(refused({2, 0, 2}, 3, 3), "previous: entries 0 and 2 are both 2");
   EXPECT_EQ(refused({0}, 1, 0), "previous: entry 0 is 0, but there were no vertices before");
-  EXPECT_EQ(refused({}, 4, 3), "previous: is missing; there are 4 vertices, and the last update had 3");
+  EXPECT_EQ(refused({}, 4, 3), "previous: it is missing; there are 4 vertices, and the last update had 3");
 }
 
 }  // namespace

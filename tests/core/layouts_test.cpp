@@ -194,7 +194,7 @@ TEST(Layouts, AreRefusedWithTheFault) {
   const CellsView cells = view(mesh).cells;
   const std::size_t n = mesh.points.size();
   for (const int size : {-1, 0, 1, 16384, 1 << 30})
-    EXPECT_THAT(refusal([&] { (void)patches(cells, n, size); }), HasSubstr("between 2 and 16383")) << size;
+    EXPECT_THAT(refusal([&] { (void)patches(cells, n, size); }), HasSubstr("give 2 to 16383")) << size;
   Mesh mixed = mesh;
   mixed.cells.push_back(Shape::quad, std::array<Index, 4>{0, 1, 2, 3});
   EXPECT_THAT(refusal([&] { (void)patches(view(mixed).cells, n); }),

@@ -486,13 +486,13 @@ TEST(OrderElements, RefusesFaultyCells) {
   const std::vector<std::uint8_t> voxel_type{11};
   EXPECT_THAT(refused(CellsView::mixed(falling, first)), HasSubstr("offset 2 is less"));
   EXPECT_EQ(refused(CellsView::mixed(offsets, tets)),
-            "cells: the offsets go from 0 to 4; for 8 entries they go from 0 to 8");
+            "cells: the offsets go from 0 to 4; for 8 entries they must go from 0 to 8");
   EXPECT_EQ(refused(CellsView::mixed(offsets, tets, 1)),
-            "cells: the offsets go from 0 to 4; for 8 entries they go from 1 to 9");
+            "cells: the offsets go from 0 to 4; for 8 entries they must go from 1 to 9");
   EXPECT_EQ(refused(CellsView::mixed(voxel_offsets, voxel, voxel_type)),
             "cells: entry 3 of cell 0 is 9, outside 0 … 3")
       << "the caller's entry, although corners 2 and 3 change places";
-  EXPECT_THAT(refusal([&] { (void)order_elements({}, four, "best"); }), HasSubstr("'best'; known are auto"));
+  EXPECT_THAT(refusal([&] { (void)order_elements({}, four, "best"); }), HasSubstr("'best'; known: auto"));
 }
 
 TEST(OrderElements, RefusesBlocksWhoseCellsHaveAnUnusualNumberOfVertices) {
@@ -590,7 +590,7 @@ TEST(OrderMesh, TakesTheNumberOfVerticesFromThePoints) {
   EXPECT_THAT(refusal([&] { (void)order_mesh({.points = plane, .cells = cells, .vertex_count = 6}); }),
               HasSubstr("points: there are 4, but vertex_count is 6"));
   EXPECT_EQ(refusal([&] { (void)order_mesh({.cells = cells}); }),
-            "cells: there are no points and no vertex_count");
+            "cells: neither points nor vertex_count are given");
   EXPECT_EQ(order_mesh({}).cells.permutation.size(), 0);
 }
 

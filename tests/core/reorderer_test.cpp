@@ -111,7 +111,7 @@ TEST(Reorderer, OrdersFirstAndMovesNothingWhileNothingChanges) {
     EXPECT_TRUE(next.permutation.is_identity());
     EXPECT_EQ(next.span_log2, first.span_log2);
     EXPECT_EQ(next.added + next.removed, 0);
-    EXPECT_THAT(next.reason, HasSubstr("as near as in the last fresh order"));
+    EXPECT_THAT(next.reason, HasSubstr("as close as in the last fresh order"));
   }
 }
 
@@ -120,10 +120,10 @@ TEST(Reorderer, SpeaksOfPlacesOnTheCurveWhereOnlyPointsAreKnown) {
   Reorderer reorderer({.method = "hilbert", .slack = 0.1});
   cloud.follow(reorderer.update(PointsView(cloud.points())));
   EXPECT_EQ(reorderer.update(PointsView(cloud.points())).reason,
-            "points are as near their places on the curve as in the last fresh order");
+            "points are as close to their places on the curve as in the last fresh order");
   cloud.stir(0.5);
   EXPECT_THAT(reorderer.update(PointsView(cloud.points())).reason,
-              StartsWith("points have left their places on the curve: mean log2 distance "));
+              StartsWith("points are too far from their places on the curve: the mean log2 distance is "));
 }
 
 TEST(Reorderer, LooksForABetterOrderLessAndLessOftenWhereThereIsNone) {
@@ -360,7 +360,7 @@ TEST(Reorderer, RefusesStatesThatAreNotWholeOrOfAnotherMethod) {
     EXPECT_THROW(other.restore(damaged), InvalidArgument) << at;
   }
   EXPECT_EQ(refusal([&] { Reorderer({.method = "rcm"}).restore(state); }),
-            "state: of the method 'fiedler', not 'rcm'");
+            "state: it is of the method 'fiedler', not 'rcm'");
   EXPECT_EQ(other.state(), before) << "unchanged";
   other.restore(state);
   EXPECT_EQ(other.state(), state);

@@ -151,7 +151,7 @@ TEST(DistributedOrder, RefusesMethodsWithoutMeaningInParts) {
       FAIL() << method;
     } catch (const SharedError& error) {
       EXPECT_EQ(error.code(), Code::invalid_argument);
-      EXPECT_THAT(error.what(), testing::HasSubstr("known are fiedler, minla, spectral"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("known: fiedler, minla, spectral"));
     }
   }
 }

@@ -342,7 +342,7 @@ def test_options_of_one_process_are_named_as_such(tmp_path):
         done = launch(1, "order", tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", option, "value")
         assert done.returncode == 2
         assert own_lines(done) == [
-            f"meshorder: '{option}' is not supported when parts are made or several ranks run; leave it out"]
+            f"meshorder: '{option}' is not supported with --parts or several ranks; leave it out"]
     assert {"--for", "--elements", "--group-by"} <= of_order - of_ranks
 
 
@@ -366,7 +366,7 @@ def test_one_rank_started_by_mpirun_makes_one_piece(tmp_path, ball):
 
 def test_one_process_has_to_be_told_how_many_pieces(tmp_path, ball):
     done = launch(1, "order", ball, "--pieces", tmp_path / "out")
-    assert done.returncode == 2 and "give --parts N, or start by mpirun -n N" in own_lines(done)[0]
+    assert done.returncode == 2 and "give --parts N, or start it with mpirun -n N" in own_lines(done)[0]
     assert os.listdir(tmp_path) == []
 
 
@@ -384,7 +384,7 @@ def matrix(tmp_path):
 def test_a_matrix_without_coordinates_has_no_geometric_order(tmp_path, matrix, options, needs):
     done = launch(2, "order", matrix, "-o", tmp_path / "b.mtx", *options)
     assert done.returncode == 2 and len(own_lines(done)) == 1
-    assert f"a.mtx has no coordinates, which {needs} needs; give them by --points FILE" in own_lines(done)[0]
+    assert f"a.mtx has no coordinates, which {needs} needs; give them with --points FILE" in own_lines(done)[0]
     assert not (tmp_path / "b.mtx").exists()
     numpy.savetxt(tmp_path / "points.txt", numpy.random.default_rng(2).random((400, 3)))
     order(2, matrix, "-o", tmp_path / "b.mtx", "--points", tmp_path / "points.txt", *options)

@@ -138,7 +138,7 @@ def test_options_that_differ_are_an_error_on_all_ranks(option, words):
     ("order_ranks(comm, triangles, own)", "vertex_count: expected a whole number, not an array of the shape ("),
     ("order_ranks(comm.py2f(), own, triangles)", "communicator: expected one of mpi4py (comm.py2f() is for C), not int"),
     ("order_ranks(None, own, triangles)", "communicator: expected one of mpi4py (comm.py2f() is for C), not NoneType"),
-    ("order_ranks(type('Comm', (), {'tompi4py': None})(), own, triangles)", "by .tompi4py()), not Comm"),
+    ("order_ranks(type('Comm', (), {'tompi4py': None})(), own, triangles)", "with .tompi4py()), not Comm"),
     ("order_parts(comm, own, triangles, places, partition='order')", "the partitions ptscotch, hilbert and rsb order each part"),
 ])
 def test_mistakes_are_told_in_a_line(call, words):

@@ -170,7 +170,7 @@ def test_texts_roles_and_names_that_pieces_use(tmp_path):
     result = json.loads(done.stdout)
     assert result["files_by"] == "rank 0"  # which reads texts
     assert_pieces_of(Grid(tmp_path / "b.vtu"), tmp_path / "out", "b", result)
-    assert sum("arrays of their own in place of those" in line for line in own_lines(done)) == 1
+    assert sum("the pieces have other arrays of the names" in line for line in own_lines(done)) == 1
     piece = Grid(tmp_path / "out" / "b_0002.vtu").vtk
     assert piece.GetPointData().GetVectors().GetName() == "u" and piece.GetPointData().GetScalars().GetName() == "id"
     assert piece.GetPointData().GetArray("u").GetComponentName(1) == "up & down"

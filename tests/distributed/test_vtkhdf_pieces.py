@@ -122,7 +122,7 @@ def test_texts_are_left_out_and_roles_are_kept(tmp_path):
     _, roles = assert_those_of(tmp_path / "out", "a", tmp_path / "out.vtkhdf", without=["text"])
     assert roles["PointData"]["Vectors"] == b"u" and roles["PointData"]["Scalars"] == b"id"
     told = "\n".join(own_lines(done))
-    for part in ("arrays of their own in place of those", "the array 'text' on vertices is not in the pieces",
+    for part in ("the pieces have other arrays of the names", "the array 'text' on vertices is not in the pieces",
                  "the array 'text' on cells is not in the pieces", "information of the array 'u' on vertices"):
         assert part in told
     assert launch(2, "order", tmp_path / "a.vtu", "--pieces", tmp_path / "no.vtkhdf", "--strict").returncode == 2

@@ -68,7 +68,7 @@ def test_every_allocation_that_fails_is_told(tmp_path, name):
 
 
 @pytest.mark.parametrize("name", ["order with maps", "cgns in place", "order by spectral"])
-def test_a_limit_on_memory_is_told(tmp_path, name):
+def test_a_memory_limit_is_reported(tmp_path, name):
     """Limits of the address space: the first is too low to load the program, the last suffices."""
     case = cases.case(name, tmp_path)
     statuses = []

@@ -437,8 +437,10 @@ TEST(Abaqus, KeepsWhatFollowsCoordinatesAndNodes) {
   EXPECT_EQ(deck_of(mesh, &notes),
             "*NODE\n1, 0, 1, 0, 0.\n2, 0, 0, 0\n3, 1, 0, 0\n4, 1, 1, 0, 0., 0.,1.\n*ELEMENT,TYPE=CPS4\n"
             "1, 2, 3, 4, 1, 2,1,\n*ELEMENT,TYPE=CPS3\n2, 2, 3, 4\n");
-  EXPECT_THAT(notes, ElementsAre(HasSubstr("fields after the coordinates of 2 nodes stay as they are"),
-                                 HasSubstr("numbers after the last node of an element stay as they are")));
+  EXPECT_THAT(
+      notes,
+      ElementsAre(HasSubstr("fields after the coordinates of 2 nodes are not supported and stay as they are"),
+                  HasSubstr("numbers after the last node of an element stay as they are")));
   const TemporaryFolder folder;
   EXPECT_THROW((void)write_mesh(mesh, folder.path() / "m.inp", WriteOptions{.strict = true}), InputError);
   EXPECT_THAT(folder.names(), IsEmpty());
@@ -608,7 +610,7 @@ TEST(Abaqus, WritesAPlainDeck) {
             "*ELEMENT, TYPE=C3D4\n1, 5, 6, 7, 9\n*ELEMENT, TYPE=S3\n2, 5, 7, 6\n"
             "*NSET, NSET=a_b\n5, 9\n*NSET, NSET=A_B_2\n6\n*ELSET, ELSET=set_1\n2\n"
             "*ELSET, ELSET=label_3\n1\n*ELSET, ELSET=label_4\n2\n");
-  EXPECT_THAT(notes, ElementsAre("labels of cells are written as sets of the names label_N",
+  EXPECT_THAT(notes, ElementsAre("labels of cells are written as sets named label_N",
                                  "the set 'a b' is written as 'a_b'", "the set 'A_B' is written as 'A_B_2'",
                                  "the set '1' is written as 'set_1'",
                                  "the set 'none' of cells is not written: it has no members"));
@@ -646,7 +648,7 @@ TEST(Abaqus, AddsNewSetsToItsDeck) {
   Notes notes;
   (void)deck_of(mesh, &notes);
   EXPECT_THAT(
-      notes, ElementsAre("the set 'Nall' of vertices is written as the deck has it; changes of it are lost"));
+      notes, ElementsAre("the set 'Nall' of vertices is written as the deck has it; changes to it are lost"));
 }
 
 TEST(Abaqus, IsAPlainDeckAfterCellsWereLeftOut) {
@@ -747,7 +749,8 @@ TEST(Abaqus, RefusesBrokenFiles) {
        {"no type", changed("type=C3D6", "typ=C3D6"), line_of("*Element, type=C3D6") + "*ELEMENT has no TYPE"},
        {"no name", changed("nset=ENDS", "set=ENDS"), line_of("*NSET, nset=ENDS") + "*NSET has no name"},
        {"generated nodes", changed("*Step", "*NGEN"), line_of("*Step") + "*NGEN makes nodes or elements"},
-       {"cylindrical nodes", changed("NSET=Nall", "SYSTEM=C"), ":4: *NODE gives coordinates in a system"},
+       {"cylindrical nodes", changed("NSET=Nall", "SYSTEM=C"),
+        ":4: *NODE gives coordinates in a local system"},
        {"another system", changed("*NODE,", "*SYSTEM\n0, 0, 1\n*NODE,"), ":5: *SYSTEM gives coordinates"},
        {"bad range", changed("2, 20, 2", "20, 2, 2"), line_of("2, 20, 2") + "the range 20 to 2 is empty"},
        {"long range", changed("2, 20, 2", "2, 20, 2, 1"), "a line of GENERATE has first, last and step"},

@@ -245,7 +245,7 @@ TEST(Cgns, RefusesNodesOfAdfThatPointElsewhere) {
            {"a tag", file.find("TaiL"), "Tail", "'TaiL' is missing"},
            {"a pointer", file.find("SNTb") + 4, "0000000G", "is not hexadecimal"},
            {"the end of children", file.find("SNTb") + 4, "00000001",
-            "the end of the children is somewhere else"},
+            "the table of children has a wrong end"},
            {"the end of values", file.find("DaTa") + 4, "000000000000", "values end before they begin"}}) {
     std::string broken = file;
     broken.replace(at, fresh.size(), fresh);

@@ -450,7 +450,7 @@ TEST(Exodus, ChangedBytesOfTheHeaderAreReadOrRefused) {
 
 TEST(Exodus, OtherFilesAreRefused) {
   EXPECT_THAT(test::read_error(TemporaryFolder().file("a.exo", "no mesh at all")),
-              HasSubstr("is not a file of netCDF"));
+              HasSubstr("is not a netCDF file"));
   const TemporaryFolder folder;
   EXPECT_THAT(test::read_error(folder.path() / "missing.exo"), HasSubstr("no such file"));
   EXPECT_THAT(test::read_error(folder.file("b.exo", std::string("CDF\x07") + std::string(40, '\0'))),

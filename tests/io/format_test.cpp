@@ -140,7 +140,7 @@ TEST(FormatOf, SaysWhatToDoWithFilesOfOtherPrograms) {
     return std::string();
   };
   EXPECT_EQ(message("a.VTP"),
-            "a.VTP: holds VTK's PolyData; save it as .ply or .vtu, in ParaView by Save Data");
+            "a.VTP: holds VTK's PolyData; save it as .ply or .vtu, in ParaView with Save Data");
   EXPECT_EQ(message("a.vts"), "a.vts: is structured; its order is fixed by the grid; nothing to reorder");
   EXPECT_NE(message("a.geo").find("gmsh IN -3 -o OUT.msh"), std::string::npos);
   // no extension has both advice and a reader

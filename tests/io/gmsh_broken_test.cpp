@@ -171,7 +171,7 @@ TEST(GmshBroken, FaultsOfWhatIsAttachedAreNamed) {
        {"absurd strings", in_22("1\n\"stress\"", "999999\n\"stress\""), "string tags is 999999"},
        {"no value", in_22("4 3.5", "4 x"), ":42: a value is 'x'"},
        {"nodes of an entry", in_41("7 4 4 5 6 7", "7 2 4 5"),
-        "other numbers of nodes than its elements have"},
+        "gives elements other numbers of nodes than they have"},
        {"absurd nodes of an entry", in_41("7 4 4 5 6 7", "7 99999999 4 5"),
         "the number of nodes of an entry is"},
        {"ghost", in_41("9 1 2 3 4", "8 1 2 3 4"), "$GhostElements names element 8"},

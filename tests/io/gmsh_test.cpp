@@ -367,7 +367,7 @@ TEST(Gmsh, NotesSetsAddedToAGmshFile) {
   mesh.sets.push_back({"mine", Association::cells, {0}});
   Notes notes;
   written(mesh, &notes);
-  EXPECT_THAT(notes, ElementsAre("the set 'mine' of cells is not written: Gmsh has no place for it"));
+  EXPECT_THAT(notes, ElementsAre("the set 'mine' of cells is not written: Gmsh cannot hold it"));
 }
 
 TEST(Gmsh, LeavesOutPeriodicPairsOfNodesThatAreNotThere) {
@@ -604,7 +604,7 @@ TEST(Gmsh, HoldsAMeshFromElsewhere) {
   for (const Mesh& mesh : {mixed_mesh(), tetrahedral_bar(5)}) {
     Notes notes;
     const std::string content = written(mesh, &notes);
-    EXPECT_THAT(notes, ElementsAre("the set 'fixed' of vertices is not written: Gmsh has no place for it"));
+    EXPECT_THAT(notes, ElementsAre("the set 'fixed' of vertices is not written: Gmsh cannot hold it"));
     const Mesh again = read_text(content);
     expect_converted(again, mesh);
     EXPECT_EQ(written(again), content);

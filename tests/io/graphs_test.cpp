@@ -160,10 +160,9 @@ TEST(MeshVertexGraph, OfTooManyPairsIsRefusedWithTheCellThatHasThem) {
     (void)vertex_graph(mesh);
     ADD_FAILURE();
   } catch (const TooLarge& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "cell 1 has 1000 vertices, each joined to all others: the graph would take 22.87 MiB, more "
-        "than the limit of 22.87 MiB; cut such cells, or raise the limit on memory (--limit-memory)");
+    EXPECT_STREQ(error.what(),
+                 "cell 1 has 1000 vertices, each joined to all others: the graph would take 22.87 MiB, more "
+                 "than the limit of 22.87 MiB; cut such cells, or raise the memory limit (--limit-memory)");
   }
   limit_joins(UINT64_MAX);
 }

@@ -49,8 +49,8 @@ TEST(KeepCells, KeepsAllThatBelongsToThem) {
   mesh.cell_blocks = {0, 2, 4};
   Notes notes;
   EXPECT_THAT(keep_cells(mesh, {.format = "vega", .notes = &notes}), ElementsAre(1, 4));
-  EXPECT_THAT(notes, ElementsAre("2 triangles are left out: Vega has no place for them",
-                                 "1 vertex is left out: Vega has no place for it",
+  EXPECT_THAT(notes, ElementsAre("2 triangles are left out: Vega cannot hold them",
+                                 "1 vertex is left out: Vega cannot hold it",
                                  "the array 'of faces' is left out with all its cells",
                                  "the set 'wall' is left out with all its cells"));
   Mesh expected = solid_with_boundary();
@@ -121,7 +121,7 @@ TEST(WriteMesh, RefusesEveryLossIfStrict) {
   keep_cells(mesh, {.dimension = 3});
   EXPECT_THAT(refusal(mesh, "a.veg"), HasSubstr("the set 'held' of vertices is not written"));
   mesh.sets.clear();
-  EXPECT_THAT(refusal(mesh, "a.veg"), HasSubstr("is not written: Vega has no place for it"));
+  EXPECT_THAT(refusal(mesh, "a.veg"), HasSubstr("is not written: Vega cannot hold it"));
   mesh.data.clear();
   EXPECT_THAT(refusal(mesh, "a.node"), HasSubstr("the ids of cells are not written"));
   EXPECT_THAT(folder.names(), IsEmpty());

@@ -31,7 +31,7 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
-constexpr std::string_view kRemedy = "if you trust the file, raise the limit on memory (--limit-memory)";
+constexpr std::string_view kRemedy = "if you trust the file, raise the memory limit (--limit-memory)";
 
 constexpr std::string_view kOneTetrahedron =
     "*VERTICES\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n*ELEMENTS\nTET\n1 4 0\n1 1 2 3 4\n";
@@ -187,9 +187,8 @@ TEST(ReadLimits, StreamsWithoutAnEndAreLeft) {
     (void)read_mesh(stream, {.format = "off", .memory_limit = 2 * kMebibyte});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "<memory>: has no end within 2 MiB; if it has one, raise the limit on memory (--limit-memory)");
+    EXPECT_STREQ(error.what(),
+                 "<memory>: has no end within 2 MiB; if it has one, raise the memory limit (--limit-memory)");
   }
 }
 
@@ -242,7 +241,7 @@ TEST(Includes, StayBelowTheFolderOfTheMesh) {
                                  name + "'\nENDDATA\n"),
                  options);
   };
-  const std::string remedy = "put it below the mesh's folder, or allow its own by --allow-includes-from";
+  const std::string remedy = "put it below the mesh's folder, or allow its own with --allow-includes-from";
   const std::string up = "../" + outside.path().filename().string() + "/secret.txt";
   for (const std::string& name : {secret.string(), std::string("link.txt"), up, std::string("/etc/passwd"),
                                   std::string("sub/../../none.txt")}) {

@@ -220,7 +220,7 @@ TEST(MetisGraph, LeavesOutWhatAGraphHasNot) {
   EXPECT_EQ(text_of(read_as("a.mtx", kReal), "a.graph", &notes), "4 2\n2\n1 4\n\n2\n");
   EXPECT_THAT(notes,
               testing::IsSupersetOf(
-                  {HasSubstr("3 vertices are left out"), HasSubstr("1 lines that join vertices once more"),
+                  {HasSubstr("3 vertices are left out"), HasSubstr("1 repeated lines are not written"),
                    HasSubstr("array 'value' on cells is not written"), HasSubstr("the matrix's comments")}));
   EXPECT_EQ(text_of(read_as("a.graph", kGraph), "a.mtx"),
             "%%MatrixMarket matrix coordinate integer symmetric\n4 4 2\n2 1 30\n3 2 40\n");
@@ -363,7 +363,7 @@ TEST(RowPoints, RefuseBrokenFiles) {
       {"1 2 3 4\n", ":1: the row has 4 numbers"},
       {"1 2 3\n4 nan 6\n7 8 9\n", ":2: a coordinate is nan; finite numbers"},
       {"1 2 3\n4 inf 6\n7 8 9\n", ":2: a coordinate is inf; finite numbers"},
-      {"1 2 3\n4 1e999 6\n7 8 9\n", ":2: a coordinate is 1e999; that is too large"},
+      {"1 2 3\n4 1e999 6\n7 8 9\n", ":2: a coordinate is 1e999; it is too large"},
       {"x y z\n1 2 3\n", ":1: a coordinate is 'x'; a number is needed"},
       {"1,,3\n", ":1: a coordinate is ''"},
       {"1,2,\n", ":1: a coordinate is ''"},

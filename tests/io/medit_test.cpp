@@ -319,7 +319,7 @@ TEST(Medit, AnOrderingThatMakesNoSenseLeavesNodesAsTheyAre) {
                              "TrianglesP2\n1\n1 4 2 6 5 3 7\n"
                              "TrianglesP2Ordering\n6\n2 0 0\n2 0 0\n0 2 0\n1 0 1\n0 1 1\n0 0 2\nEnd\n",
                          &notes);
-  EXPECT_THAT(notes, ElementsAre(HasSubstr("TrianglesP2Ordering is not understood")));
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("TrianglesP2Ordering is not supported")));
   EXPECT_THAT(mesh.cells.vertices, ElementsAre(0, 3, 1, 5, 4, 2));
   EXPECT_THAT(written(mesh), HasSubstr("\nTrianglesP2\n1\n1 4 2 6 5 3 7\n"));
 }
@@ -514,9 +514,9 @@ TEST(Medit, SaysWhatIsWrongAndWhere) {
         ":16: a number of Normals is 'End'"},
        {"ordering of another size", vertices + cell + "TetrahedraP2Ordering\n4\n2 0 0 0\n", "10 are needed"},
        {"domain without triangles", vertices + cell + "SubDomainFromMesh\n1\n3 1 1 0\nEnd\n",
-        ":14: a line of SubDomainFromMesh begins with '3'; 2, for an edge"},
+        ":14: a line of SubDomainFromMesh begins with '3'; it must begin with 2, for an edge"},
        {"domain of tetrahedra", vertices + "Triangles\n1\n1 2 3 1\nSubDomainFromMesh\n1\n4 1 1 0\nEnd\n",
-        ":14: a line of SubDomainFromMesh begins with '4'; 3, for a triangle"},
+        ":14: a line of SubDomainFromMesh begins with '4'; it must begin with 3, for a triangle"},
        {"edge of a domain", vertices + cell + "SubDomain\n1\n2 1 1 0\nEnd\n",
         ":14: SubDomain counts cells of type line, and there are none"},
        {"periodic vertex beyond", vertices + cell + "PeriodicVertices\n1\n1 5\nEnd\n",
@@ -525,9 +525,9 @@ TEST(Medit, SaysWhatIsWrongAndWhere) {
        {"too few sizes", vertices + "hVertices\n1 1 1\n" + cell,
         ":11: a number of hVertices is 'Tetrahedra'"},
        {"unknown section", vertices + cell + "Fault_SmallTri\n1\n1\nEnd\n",
-        ":12: the section Fault_SmallTri is not understood"},
+        ":12: the section Fault_SmallTri is not supported"},
        {"section of cubic cells", vertices + "TetrahedraP3\n0\nEnd\n",
-        "the section TetrahedraP3 is not understood"}});
+        "the section TetrahedraP3 is not supported"}});
 }
 
 TEST(Medit, RefusesFoldersAndMissingFiles) {

@@ -193,20 +193,20 @@ TEST(Obj, BrokenFilesStopWithTheirLine) {
        {"binary", std::string("\0\1\2\3", 4), ":1: the statement"},
        {"only comments", "# nothing\n", "has no cells"},
        {"only vertices", vertices, "has no cells"},
-       {"two coordinates", "v 0 0\n", ":1: a vertex of 2 numbers"},
-       {"five numbers", "v 0 0 0 1 1\n", ":1: a vertex of 5 numbers"},
-       {"seven numbers", "v 0 0 0 1 1 1 1\n", ":1: a vertex of more than 6 numbers"},
+       {"two coordinates", "v 0 0\n", ":1: a vertex has 2 numbers"},
+       {"five numbers", "v 0 0 0 1 1\n", ":1: a vertex has 5 numbers"},
+       {"seven numbers", "v 0 0 0 1 1 1 1\n", ":1: a vertex has more than 6 numbers"},
        {"nan", "v 0 0 0\nv 0 nan 0\n", ":2: a coordinate is not finite"},
        {"infinite", "v 0 0 inf\n", ":1: a coordinate is not finite"},
        {"no number", "v 0 x 0\n", ":1: a coordinate is 'x'"},
        {"no colour", "v 0 0 0 1 x 0\n", ":1: a weight or colour is 'x'"},
        {"texture of words", "vt a\n", ":1: a number of vt is 'a'"},
-       {"texture of none", "vt\n", ":1: a line vt of 0 numbers; 1 to 3 are right"},
-       {"normal of two", "vn 0 0\n", ":1: a line vn of 2 numbers; 3 are needed"},
+       {"texture of none", "vt\n", ":1: a line vt has 0 numbers; 1 to 3 are needed"},
+       {"normal of two", "vn 0 0\n", ":1: a line vn has 2 numbers; 3 are needed"},
        {"vertex zero", vertices + "f 0 1 2\n", ":4: v 0 does not exist"},
        {"vertex too large", vertices + "f 1 2 4\n\n", ":4: v 4 does not exist; there are 3, counted from 1"},
        {"absurd vertex", vertices + "f 1 2 1000000000000\n",
-        ":4: a number of v is 1000000000000; that is too large"},
+        ":4: a number of v is 1000000000000; it is too large"},
        {"too far back", vertices + "f -1 -2 -4\n", ":4: v -4 does not exist"},
        {"vertex no number", vertices + "f 1 2 x\n", ":4: a number of v is 'x'"},
        {"texture too large", vertices + "vt 0\nf 1/1 2/1 3/2\n", ":5: vt 2 does not exist"},
@@ -214,12 +214,12 @@ TEST(Obj, BrokenFilesStopWithTheirLine) {
        {"mixed corners", vertices + "vt 0\nf 1/1 2/1 3\n", ":5: corners of one cell have different"},
        {"ends in slash", vertices + "f 1/ 2/ 3/\n", ":4: a corner ends in a slash"},
        {"too many slashes", vertices + "vt 0\nvn 1 0 0\nf 1/1/1/1 2 3\n", ":6: a number of vn is '1/1'"},
-       {"face of two", vertices + "f 1 2\n", ":4: a cell of 2 vertices; this kind needs at least 3"},
-       {"line of one", vertices + "l 1\n", ":4: a cell of 1 vertices; this kind needs at least 2"},
-       {"point of none", vertices + "p\n", ":4: a cell of 0 vertices"},
+       {"face of two", vertices + "f 1 2\n", ":4: a cell has 2 vertices; this kind needs at least 3"},
+       {"line of one", vertices + "l 1\n", ":4: a cell has 1 vertices; this kind needs at least 2"},
+       {"point of none", vertices + "p\n", ":4: a cell has 0 vertices"},
        {"error in a continued line", vertices + "f 1 \\\n2 \\\nx\n", ":4: a number of v is 'x'"},
-       {"ends continued", vertices + "f 1 2 \\", ":4: a cell of 2 vertices"},
-       {"smoothing", vertices + "s smooth\nf 1 2 3\n", ":4: the smoothing group 'smooth'"},
+       {"ends continued", vertices + "f 1 2 \\", ":4: a cell has 2 vertices"},
+       {"smoothing", vertices + "s smooth\nf 1 2 3\n", ":4: the smoothing group is 'smooth'"},
        {"free form", vertices + "cstype bspline\n", ":4: free-form geometry ('cstype') is not read"},
        {"parameter vertex", "vp 0 1\n", ":1: free-form geometry ('vp') is not read"},
        {"curve", vertices + "curv 0 1 1 2 3\n", ":4: free-form geometry ('curv') is not read"},
@@ -268,12 +268,12 @@ TEST(Obj, WritesOtherMeshesExactlySoAndNotesWhatItCannotHold) {
       "v 0.1 0 0 1 0 0\nv 1 0 0 0 0.2 0\nv 0 1 0 0 0 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 0\nvn 0.5 0.5 0.5\n"
       "vn 1 1 1\ng part two_words\nusemtl 1\nf 1/1/1 2/2/2 3/3/3\n");
   EXPECT_EQ(notes, (Notes{"labels of cells are written as materials (usemtl) of their numbers",
-                          "the array 'label' on vertices is not written: OBJ has no place for it",
-                          "the array 'temperature' on vertices is not written: OBJ has no place for it",
-                          "the array 'stress' on vertices is not written: OBJ has no place for it",
-                          "the array 'temperature' on cells is not written: OBJ has no place for it",
-                          "the array 'stress' on cells is not written: OBJ has no place for it",
-                          "the set 'fixed' of vertices is not written: OBJ has no place for it",
+                          "the array 'label' on vertices is not written: OBJ cannot hold it",
+                          "the array 'temperature' on vertices is not written: OBJ cannot hold it",
+                          "the array 'stress' on vertices is not written: OBJ cannot hold it",
+                          "the array 'temperature' on cells is not written: OBJ cannot hold it",
+                          "the array 'stress' on cells is not written: OBJ cannot hold it",
+                          "the set 'fixed' of vertices is not written: OBJ cannot hold it",
                           "the set 'two words' is written as the group 'two_words'",
                           "the ids of cells are not written: OBJ numbers them by position"}));
 }
@@ -284,10 +284,9 @@ TEST(Obj, OtherFormatsNameWhatIsLost) {
   write_mesh(
       read_mesh(folder.file("a.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n")),
       folder.path() / "a.off", &notes);
-  EXPECT_EQ(notes,
-            (Notes{"the array 'label' on cells is not written: OFF has no place for it",
-                   "not written (OFF has no place for it): the names of material libraries",
-                   "not written (OFF has no place for it): usemtl red, which is 1 in the array 'label'"}));
+  EXPECT_EQ(notes, (Notes{"the array 'label' on cells is not written: OFF cannot hold it",
+                          "not written (OFF cannot hold it): the names of material libraries",
+                          "not written (OFF cannot hold it): usemtl red, which is 1 in the array 'label'"}));
 }
 
 TEST(Obj, RefusesVolumesAndCurvedCells) {

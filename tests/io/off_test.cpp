@@ -115,8 +115,8 @@ TEST(Off, BrokenFilesStopWithTheirLine) {
       "a.off",
       {{"garbage", "\x89PNG\r\n\x1a\n\0\0", ":1: the file does not begin with OFF"},
        {"binary", "OFF BINARY\n\0\0\0\3", ":1: is a binary OFF file"},
-       {"four coordinates", "4OFF\n1 1 0\n0 0 0 1\n1 0\n", ":1: points of more than three coordinates"},
-       {"n coordinates", "nOFF\n5\n1 1 0\n", ":1: points of more than three coordinates"},
+       {"four coordinates", "4OFF\n1 1 0\n0 0 0 1\n1 0\n", ":1: points have more than three coordinates"},
+       {"n coordinates", "nOFF\n5\n1 1 0\n", ":1: points have more than three coordinates"},
        {"only comments", "# nothing\n\n", "the file does not begin with OFF"},
        {"only the keyword", "OFF\n", "unexpected end of file; expected the number of vertices"},
        {"no vertices", "OFF\n3 1 0\n", ":2: the number of vertices is 3, but only"},
@@ -125,7 +125,7 @@ TEST(Off, BrokenFilesStopWithTheirLine) {
        {"10^12 faces", "OFF\n1 1000000000000 0\n0 0 0\n", ":2: the number of faces is 1000000000000"},
        {"zero faces", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "has no cells"},
        {"a vertex too few", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", ":6: a vertex has more numbers"},
-       {"a vertex too many", "OFF\n2 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", ":5: a face without vertices"},
+       {"a vertex too many", "OFF\n2 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", ":5: a face has no vertices"},
        {"a face too few", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
         "unexpected end of file; expected the number of a face"},
        {"a face too many", vertices + "3 0 1 2\n3 0 1 2\n", ":7: unexpected data after 1 faces"},
@@ -134,13 +134,13 @@ TEST(Off, BrokenFilesStopWithTheirLine) {
        {"no number", "OFF\n3 1 0\n0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n", ":4: a coordinate is 'x'"},
        {"fewer numbers", "OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", ":4: a vertex has fewer numbers"},
        {"more numbers", "OFF\n3 1 0\n0 0 0\n1 0 0 0\n0 1 0\n3 0 1 2\n", ":4: a vertex has more numbers"},
-       {"half a color", "COFF\n1 1 0\n0 0 0 1 1\n1 0\n", ":3: a vertex of 5 numbers"},
+       {"half a color", "COFF\n1 1 0\n0 0 0 1 1\n1 0\n", ":3: a vertex has 5 numbers"},
        {"index too large", vertices + "3 0 1 3\n", ":6: a face names vertex 3; there are 3, counted from 0"},
        {"index negative", vertices + "3 0 1 -1\n", ":6: a face names vertex -1"},
        {"index no number", vertices + "3 0 1 x\n", ":6: a vertex of a face is 'x'"},
        {"absurd face", vertices + "1000000000 0 1 2\n", ":6: the number of a face's vertices is 1000000000"},
        {"negative face", vertices + "-3 0 1 2\n", ":6: the number of a face's vertices is -3"},
-       {"empty face", vertices + "0 1 2 3\n", ":6: a face without vertices"},
+       {"empty face", vertices + "0 1 2 3\n", ":6: a face has no vertices"},
        {"five color numbers", vertices + "3 0 1 2 1 1 1 1 1\n", "followed by 5 numbers"},
        {"color no number", vertices + "3 0 1 2 red\n", ":6: a colour is 'red'"}});
 }
@@ -179,14 +179,14 @@ TEST(Off, NotesWhatItCannotHold) {
   mesh.data.push_back({"blue", Association::vertices, 1, std::vector<std::uint8_t>{7, 8, 9}, {}, {}});
   Notes notes;
   write_mesh(mesh, folder.path() / "a.off", &notes);
-  EXPECT_EQ(notes, (Notes{"the array 'label' on vertices is not written: OFF has no place for it",
-                          "the array 'temperature' on vertices is not written: OFF has no place for it",
-                          "the array 'stress' on vertices is not written: OFF has no place for it",
-                          "the array 'label' on cells is not written: OFF has no place for it",
-                          "the array 'temperature' on cells is not written: OFF has no place for it",
-                          "the array 'stress' on cells is not written: OFF has no place for it",
-                          "the set 'fixed' of vertices is not written: OFF has no place for it",
-                          "the set 'part' of cells is not written: OFF has no place for it",
+  EXPECT_EQ(notes, (Notes{"the array 'label' on vertices is not written: OFF cannot hold it",
+                          "the array 'temperature' on vertices is not written: OFF cannot hold it",
+                          "the array 'stress' on vertices is not written: OFF cannot hold it",
+                          "the array 'label' on cells is not written: OFF cannot hold it",
+                          "the array 'temperature' on cells is not written: OFF cannot hold it",
+                          "the array 'stress' on cells is not written: OFF cannot hold it",
+                          "the set 'fixed' of vertices is not written: OFF cannot hold it",
+                          "the set 'part' of cells is not written: OFF cannot hold it",
                           "the ids of vertices are not written: OFF numbers them by position"}));
   const Mesh back = read_mesh(folder.path() / "a.off");
   EXPECT_EQ(back.points, mesh.points);
@@ -199,7 +199,7 @@ TEST(Off, LeavesOutLinesThatOtherReadersDoNotTake) {
   const Mesh mesh = test::triangles_and_line(1);
   Notes notes;
   write_mesh(mesh, folder.path() / "a.off", &notes);
-  EXPECT_EQ(notes, (Notes{"1 line is left out: OFF has no place for it"}));
+  EXPECT_EQ(notes, (Notes{"1 line is left out: OFF cannot hold it"}));
   EXPECT_NE(content_of(folder.path() / "a.off").find("3 1 0\n"), std::string::npos);
 }
 

@@ -235,14 +235,15 @@ TEST(OpenFoam, RefusesBrokenFilesWithTheirPlace) {
            {&Files::owner, with(good.owner, "ascii", "binary"),
             "the header says `format binary`, but the numbers are text; correct `format`"},
            {&Files::boundary, patches("1(walls { nFaces 9; startFace 1; })"),
-            "boundary: the patches cover the faces 1 to 9 of 1 to 10"},
+            "boundary: the patches cover faces 1 to 9, but the boundary has faces 1 to 10"},
            {&Files::boundary, patches("1(walls { nFaces 10;\nstartFace 2; })"),
             "boundary:13: the patch 'walls' begins at face 2, but face 1 is next"},
            {&Files::boundary, patches("2(a { nFaces 5; startFace 1; } b { nFaces 5; startFace 5; })"),
             "the patch 'b' begins at face 5, but face 6 is next"},
            {&Files::boundary, patches("1(walls { inner { nFaces 10; } startFace 1; })"),
-            "the patch 'walls' has no number as nFaces"},
-           {&Files::boundary, patches("1(walls { nFaces 10; startFace -1; })"), "has no number as startFace"},
+            "the patch 'walls' gives no number for nFaces"},
+           {&Files::boundary, patches("1(walls { nFaces 10; startFace -1; })"),
+            "gives no number for startFace"},
            {&Files::boundary, patches("walls { nFaces 10; startFace 1; }"), "expected a list of patches"},
            {&Files::boundary, patches("1(walls nFaces 10;)"), "expected '{' after the patch 'walls'"},
            {&Files::boundary, patches("1(walls { nFaces 10;"), "the file ends within the list of patches"},
@@ -264,7 +265,7 @@ TEST(OpenFoam, RefusesBrokenFilesWithTheirPlace) {
             "there are more faces than owners"},
            {&Files::faces, file_of("faceCompactList", "2(0 5) 4(1 4 10 7)"),
             "face 0 has the points 0 to 5 of 4"},
-           {&Files::faces, file_of("faceCompactList", "3(0 3 1) 4(1 4 10 7)"), "the places must rise"},
+           {&Files::faces, file_of("faceCompactList", "3(0 3 1) 4(1 4 10 7)"), "offsets must ascend"},
        }) {
     Files files = good;
     files.*file = content;
@@ -394,7 +395,7 @@ TEST(OpenFoam, OtherReadersNameTheSubcommand) {
   EXPECT_FALSE(is_case(folder.path()));
   for (const std::filesystem::path& given : {path, path / "cavity.foam"}) {
     EXPECT_THAT(test::read_error(given),
-                HasSubstr("is an OpenFOAM case; order its cells by meshorder openfoam " + path.string()));
+                HasSubstr("is an OpenFOAM case; order its cells with meshorder openfoam " + path.string()));
   }
   EXPECT_THAT(test::read_error(folder.path() / "a.foam"), HasSubstr("unknown extension '.foam'"));
 }

@@ -307,7 +307,7 @@ TEST(Ply, BrokenFilesStopWithTheirPlace) {
        {"unknown type", ascii + "element vertex 1\nproperty real x\n", ":4: the type 'real' is unknown"},
        {"property first", ascii + "property float x\n", ":3: 'property float x' is not a header line"},
        {"real list count", ascii + "element face 1\nproperty list float int vertex_indices\n",
-        ":4: a list whose length"},
+        ":4: the length of a list is not an integer"},
        {"no end_header", head.substr(0, head.find("end_header")), "unexpected end of file in the header"},
        {"no vertices", ascii + "element face 1\n" + faces + "end_header\n1 0\n",
         ":5: the header has no element vertex"},
@@ -339,7 +339,7 @@ TEST(Ply, BrokenFilesStopWithTheirPlace) {
        {"no data", head, "the number of vertex is 3, but only 0 bytes"},
        {"a vertex too few", head + "0 0 0\n1 0 0\n3 0 1 2\n",
         ":12: the list vertex_indices has the length 2"},
-       {"a vertex too many", vertices + "0 0 1\n3 0 1 2\n", ":13: a face without vertices"},
+       {"a vertex too many", vertices + "0 0 1\n3 0 1 2\n", ":13: a face has no vertices"},
        {"a face too many", vertices + "3 0 1 2\n3 0 1 2\n", ":14: unexpected data after"},
        {"nan", head + "0 nan 0\n1 0 0\n0 1 0\n3 0 1 2\n", ":10: a coordinate is not finite"},
        {"infinite", head + "0 0 0\n1 -inf 0\n0 1 0\n3 0 1 2\n", ":11: a coordinate is not finite"},
@@ -348,16 +348,17 @@ TEST(Ply, BrokenFilesStopWithTheirPlace) {
         ":13: vertex 3 does not exist; there are 3, counted from 0"},
        {"index negative", vertices + "3 0 1 -1\n", ":13: vertex -1 does not exist"},
        {"index real", vertices + "3 0 1 1.5\n", ":13: a vertex is '1.5'"},
-       {"empty face", vertices + "0 0 1 2\n", ":13: a face without vertices"},
+       {"empty face", vertices + "0 0 1 2\n", ":13: a face has no vertices"},
        {"absurd face", vertices + "200 0 1 2\n", ":13: the list vertex_indices has the length 200"},
-       {"face count too wide", vertices + "300 0 1 2\n", ":13: the length of a list is 300; it does not fit"},
+       {"face count too wide", vertices + "300 0 1 2\n",
+        ":13: the length of a list is 300; the property's type cannot hold it"},
        {"face cut", vertices + "3 0 1\n", "unexpected end of file; expected a vertex"},
        {"byte too large",
         with_vertex("property uchar red")
             .replace(with_vertex("property uchar red").find("0 0 0 0"), 7, "0 0 0 999"),
-        "red is 999; it does not fit"},
+        "red is 999; the property's type cannot hold it"},
        {"tetrahedron of three", with_element("element tetra 1\nproperty list uchar int vertex_indices\n"),
-        "a tetrahedron of 1 vertices"},
+        "a tetrahedron has 1 vertices"},
        {"binary cut", binary.substr(0, binary.size() - 1), "byte 325: unexpected end of file in scale"},
        {"binary vertices cut", binary.substr(0, binary.size() - 40), "the number of vertex is 3"},
        {"binary too long", binary + "x", "byte 329: unexpected data after"},
@@ -408,8 +409,8 @@ TEST(Ply, WritesOtherMeshesExactlySo) {
       "property list uchar int vertex_indices\nproperty int my_label\nproperty list uchar double pair\n"
       "element edge 1\nproperty int vertex1\nproperty int vertex2\nproperty int my_label\n");
   EXPECT_EQ(notes, (Notes{"the array 'my label' is written as 'my_label'",
-                          "the array 'words' on cells is not written: PLY has no place for it",
-                          "the set 'part' of cells is not written: PLY has no place for it"}));
+                          "the array 'words' on cells is not written: PLY cannot hold it",
+                          "the set 'part' of cells is not written: PLY cannot hold it"}));
   const Mesh back = read_mesh(folder.path() / "a.ply");
   EXPECT_EQ(back.points, mesh.points);
   EXPECT_EQ(back.cells.vertices, (std::vector<Index>{0, 1, 2, 0, 1}));
@@ -439,7 +440,7 @@ TEST(Ply, LeavesOutWhatOtherReadersDoNotFind) {
   const Mesh mesh = test::triangles_and_line(2);
   Notes notes;
   write_mesh(mesh, folder.path() / "a.ply", &notes);
-  EXPECT_EQ(notes, (Notes{"1 line is left out: PLY has no place for it"}));
+  EXPECT_EQ(notes, (Notes{"1 line is left out: PLY cannot hold it"}));
   EXPECT_EQ(content_of(folder.path() / "a.ply").find("edge"), std::string::npos);
   EXPECT_NE(write_error(tetrahedral_bar(1), folder.path() / "b.ply")
                 .find("PLY cannot hold a cell of type tetrahedron"),

@@ -104,8 +104,8 @@ TEST(Stl, WritesSolidsAsTheyStood) {
   Notes notes;
   write_mesh(read_mesh(folder.file("a.stl", kTwoSolids)), folder.path() / "b.stl", &notes);
   EXPECT_EQ(content_of(folder.path() / "b.stl"), kTwoSolids);
-  EXPECT_EQ(notes, Notes{"STL has no vertex order: readers number vertices by first appearance and take "
-                         "equal points as one"});
+  EXPECT_EQ(notes, Notes{"STL has no vertex order: readers number vertices by first appearance and merge "
+                         "equal points"});
 }
 
 TEST(Stl, KeepsEmptySolids) {
@@ -244,7 +244,7 @@ TEST(Stl, BrokenFilesStopWithTheirPlace) {
         ":4: a coordinate is not finite"},
        {"no number", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 x 0\n", ":4: a coordinate is 'x'"},
        {"binary cut", binary.substr(0, 150),
-        "byte 80: a binary STL file of 2 triangles has 184 bytes, this has 150"},
+        "byte 80: a binary STL file of 2 triangles has 184 bytes, this one has 150"},
        {"binary header cut", std::string(50, '\0'), "is not an STL file"},
        {"absurd count", huge, "byte 80: a binary STL file of 4294967295 triangles"},
        {"binary solid cut", binary_file("solid").substr(0, 100), "byte 80: a binary STL file of 2"},
@@ -269,13 +269,13 @@ TEST(Stl, WritesOtherMeshesAsTextWithASolidForEachLabel) {
   mesh.cell_ids = {2, 3, 4, 5};
   Notes notes;
   write_mesh(mesh, folder.path() / "a.stl", &notes);
-  EXPECT_EQ(notes, (Notes{"STL has no vertex order: readers number vertices by first appearance and take "
-                          "equal points as one",
+  EXPECT_EQ(notes, (Notes{"STL has no vertex order: readers number vertices by first appearance and merge "
+                          "equal points",
                           "vertices without cells are not written: 1",
-                          "the array 'temperature' on cells is not written: STL has no place for it",
-                          "the array 'stress' on cells is not written: STL has no place for it",
-                          "the set 'fixed' of vertices is not written: STL has no place for it",
-                          "the set 'part' of cells is not written: STL has no place for it",
+                          "the array 'temperature' on cells is not written: STL cannot hold it",
+                          "the array 'stress' on cells is not written: STL cannot hold it",
+                          "the set 'fixed' of vertices is not written: STL cannot hold it",
+                          "the set 'part' of cells is not written: STL cannot hold it",
                           "the ids of cells are not written: STL numbers them by position"}));
   const Mesh back = read_mesh(folder.path() / "a.stl");
   const Permutation by_label = Permutation::from_new_to_old({0, 3, 1, 2});  // labels 1 2 3 1

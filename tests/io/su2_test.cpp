@@ -200,7 +200,7 @@ TEST(Su2, AMarkerThatIsRenamedKeepsItsPlace) {
 TEST(Su2, NotesNumbersThatAreNotPlaces) {
   Notes notes;
   (void)read_su2(with(std::string(kPlane), "1 1 2\n", "1 1 3\n"), &notes);
-  EXPECT_THAT(notes, ElementsAre(HasSubstr("places count")));
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("they are ignored, as in SU2")));
 }
 
 /// Boundary cells first and last, in sets and with labels, as Gmsh's readers make them.
@@ -307,7 +307,7 @@ TEST(Su2, LeavesOutWhatIsNoElementAndNoBoundary) {
   mesh.cells.push_back(Shape::line, std::array<Index, 2>{0, 1});
   Notes notes;
   write_mesh(mesh, folder.path() / "m.su2", &notes);
-  EXPECT_THAT(notes, Contains(HasSubstr("1 line is left out: SU2 has no place for it")));
+  EXPECT_THAT(notes, Contains(HasSubstr("1 line is left out: SU2 cannot hold it")));
   EXPECT_EQ(read_mesh(folder.path() / "m.su2").cell_count(), before);
 }
 

@@ -228,11 +228,11 @@ TEST(Vega, BrokenFilesStopWithTheirLine) {
         ":11: element 1 is given twice"},
        {"set out of range", elements + "*SET a\n1, 2\n", ":12: element 2 does not exist"},
        {"set of words", elements + "*SET a\nb\n", ":12: an element of set 'a' is 'b'"},
-       {"set without name", elements + "*SET\n1\n", ":11: a set without a name"},
+       {"set without name", elements + "*SET\n1\n", ":11: a set has no name"},
        {"set before elements", vertices + "*SET a\n1\n", ":7: *SET before *ELEMENTS"},
        {"material without properties", elements + "*MATERIAL m\n",
         ":12: unexpected end of file; expected the properties"},
-       {"region without material", elements + "*REGION\nallElements\n", ":12: a region without a comma"},
+       {"region without material", elements + "*REGION\nallElements\n", ":12: a region has no comma"},
        {"region of no material", elements + "*REGION\nallElements, m\n", ":12: material 'm' does not exist"},
        {"region of no set", elements + "*MATERIAL m\nENU, 1, 1, 0\n*REGION\na, m\n",
         ":14: set 'a' does not exist"},
@@ -297,13 +297,13 @@ TEST(Vega, NotesWhatItCannotHold) {
   mesh.vertex_ids = {2, 3, 4, 5, 6, 7, 8, 9};
   Notes notes;
   write_mesh(mesh, folder.path() / "a.veg", &notes);
-  EXPECT_EQ(notes, (Notes{"the set 'fixed' of vertices is not written: Vega has no place for it",
-                          "the array 'label' on vertices is not written: Vega has no place for it",
-                          "the array 'temperature' on vertices is not written: Vega has no place for it",
-                          "the array 'stress' on vertices is not written: Vega has no place for it",
-                          "labels of cells are written as sets of the names label_N",
-                          "the array 'temperature' on cells is not written: Vega has no place for it",
-                          "the array 'stress' on cells is not written: Vega has no place for it",
+  EXPECT_EQ(notes, (Notes{"the set 'fixed' of vertices is not written: Vega cannot hold it",
+                          "the array 'label' on vertices is not written: Vega cannot hold it",
+                          "the array 'temperature' on vertices is not written: Vega cannot hold it",
+                          "the array 'stress' on vertices is not written: Vega cannot hold it",
+                          "labels of cells are written as sets named label_N",
+                          "the array 'temperature' on cells is not written: Vega cannot hold it",
+                          "the array 'stress' on cells is not written: Vega cannot hold it",
                           "the ids of vertices are not written: Vega numbers them by position"}));
   const Mesh back = read_mesh(folder.path() / "a.veg");
   EXPECT_EQ(back.points, mesh.points);

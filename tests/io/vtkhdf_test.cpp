@@ -149,11 +149,10 @@ TEST(VtkHdf, TellsWhatItHasNoPlaceFor) {
   mesh.format_metadata = metadata;
   Notes notes;
   const Mesh read = through_vtkhdf(mesh, &notes);
-  EXPECT_THAT(
-      notes,
-      ElementsAre("the names of the components of 'shift' are not written: VTKHDF has no place for them",
-                  "the array 'big' on cells is not written: VTKHDF has no place for it",
-                  "not written (VTKHDF has no place for it): the information of the array 'heat'"));
+  EXPECT_THAT(notes,
+              ElementsAre("the names of the components of 'shift' are not written: VTKHDF cannot hold them",
+                          "the array 'big' on cells is not written: VTKHDF cannot hold it",
+                          "not written (VTKHDF cannot hold it): the information of the array 'heat'"));
   EXPECT_EQ(find_array(read, "big", Association::cells), nullptr);
 }
 

@@ -270,11 +270,11 @@ TEST(Comparison, NamesTheBestOrderOfAllKernelsOrOfOne) {
   EXPECT_EQ(
       comparison_in_words(advice, Workload::all),
       "the kernels run 2.00× faster in hilbert than in the file's own order, in their geometric mean; it "
-      "takes 300 ms and pays after 2 time steps");
-  EXPECT_EQ(
-      comparison_in_words(advice, Workload::springs),
-      "the springs kernel runs 4.00× faster in rcm than in the file's own order; it takes 300 ms and pays "
-      "after 100 runs of the springs kernel");
+      "takes 300 ms and pays off after 2 time steps");
+  EXPECT_EQ(comparison_in_words(advice, Workload::springs),
+            "the springs kernel runs 4.00× faster in rcm than in the file's own order; it takes 300 ms and "
+            "pays off "
+            "after 100 runs of the springs kernel");
   EXPECT_EQ(comparison_in_words(advice, Workload::fill), comparison_in_words(advice, Workload::all))
       << "no kernel measures it";
   EXPECT_DOUBLE_EQ(*certain_gain(advice), 2) << "of the order that is advised";
@@ -283,7 +283,7 @@ TEST(Comparison, NamesTheBestOrderOfAllKernelsOrOfOne) {
   EXPECT_EQ(
       comparison_in_words(advice, Workload::all),
       "the kernels run faster in hilbert than in the file's own order (measured while the machine was busy: "
-      "the amount is in doubt)");
+      "the amount is uncertain)");
   EXPECT_EQ(certain_gain(advice), std::nullopt);
 }
 
@@ -293,9 +293,8 @@ TEST(Comparison, SaysWhereNothingIsGainedAndDoesNotTakeChanceForAGain) {
   for (Candidate& candidate : advice.candidates) candidate.costs.measured = {3.7, 4, 4, 4};
   advice.kernels = kernel_advice(advice);
   EXPECT_EQ(comparison_in_words(advice, Workload::all),
-            "nothing to gain: the kernels run no faster in these orders than in the file's own, beyond the "
-            "uncertainty "
-            "of the measurement");
+            "nothing to gain: the kernels run no faster in these orders than in the file's own, within the "
+            "uncertainty of the measurement");
   advice.candidates[1].costs.measured = {2, 8, 8, 8};
   advice.candidates[1].vertices.name = "rcm";
   advice.candidates[1].elements.name = "original";

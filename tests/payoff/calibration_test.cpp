@@ -372,7 +372,7 @@ TEST(CalibrationStore, WhatIsNoFileIsNotWaitedFor) {
   EXPECT_THAT(load_calibration(key_of_this_machine()).fault, HasSubstr("is not used: "));
   std::filesystem::remove(file);
   std::filesystem::create_symlink("/dev/zero", file);
-  EXPECT_THAT(load_calibration(key_of_this_machine()).fault, HasSubstr("lies outside of the folder"));
+  EXPECT_THAT(load_calibration(key_of_this_machine()).fault, HasSubstr("is outside the folder"));
 }
 
 TEST(CalibrationStore, NoDamagedFileIsTaken) {
@@ -472,7 +472,7 @@ TEST(MachineChoice, UnknownNamesGetTheNearest) {
     return std::string();
   };
   EXPECT_EQ(fault("zen6"), "unknown machine 'zen6'; did you mean 'zen3'?");
-  EXPECT_EQ(fault("cray"), "unknown machine 'cray'; known are this, zen3");
+  EXPECT_EQ(fault("cray"), "unknown machine 'cray'; known: this, zen3");
   const Variable machine("MESHORDER_MACHINE", "cray");
   EXPECT_THAT(fault(""), HasSubstr("unknown machine 'cray'"));
 }

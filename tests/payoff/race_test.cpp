@@ -51,8 +51,8 @@ TEST(Race, GoesToTheOrderThatIsTimedAsTheFastest) {
   EXPECT_EQ(result.methods().vertices, result.advice.candidates[1].vertices.name);
   EXPECT_EQ(result.methods().elements, result.advice.candidates[1].elements.name);
   EXPECT_EQ(result.reason,
-            "none of 3 orders timed here is faster by more than the variation of the times; 4.00 times as "
-            "fast as the file's");
+            "4.00 times as fast as the file's order; none of 3 orders timed here is faster by more than the "
+            "variation of the times");
   EXPECT_EQ(result.advice.doubt, "");
 }
 
@@ -129,7 +129,7 @@ TEST(Race, WithoutATimerAGoodOrderStays) {
   EXPECT_EQ(result.winner, std::nullopt);
   EXPECT_EQ(
       result.reason,
-      "no order is predicted to be faster than the file's by more than the error of predictions, for zen3");
+      "for zen3, no order is predicted to be faster than the file's by more than the error of predictions");
 }
 
 TEST(Race, LeavesOutOrdersByCoordinatesForAMatrixWithoutThem) {

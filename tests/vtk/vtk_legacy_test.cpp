@@ -271,9 +271,9 @@ TEST(VtkLegacy, WhatVtkReadsIsRead) {
            {"components on the next line", spelt("heat float 1", "heat float\n1"), ""},
            {"keywords in lower case", spelt("POINT_DATA 5\nSCALARS", "point_data 5\nscalars"), ""},
            {"no version", spelt(" 3.0", ""),
-            "the first line gives no version; the file is read as one of version 3.0"},
+            "the first line gives no version; the file is read as version 3.0"},
            {"a version of one number", spelt("3.0", "3"),
-            "the first line gives no version; the file is read as one of version 3.0"},
+            "the first line gives no version; the file is read as version 3.0"},
            {"words after the version", spelt("3.0", "3.0 of today"), ""},
            {"other metadata", spelt("CELL_DATA", "METADATA\nORIGIN here\n\nCELL_DATA"),
             "METADATA has 'ORIGIN', which is left out"},
@@ -616,7 +616,7 @@ TEST(VtkLegacy, BecomesVtuAndBackWithRolesAndFields) {
   const Mesh mesh = read_mesh(folder.file("a.vtk", with(kSmall, "nan", "3")));
   Notes notes;
   write_mesh(mesh, folder.path() / "b.vtu", &notes);
-  EXPECT_EQ(notes, (Notes{"not written (VTU has no place for it): the lookup table 'warm'"}));
+  EXPECT_EQ(notes, (Notes{"not written (VTU cannot hold it): the lookup table 'warm'"}));
   const Mesh back = read_mesh(folder.path() / "b.vtu");
   expect_same(back, mesh);
   write_mesh(back, folder.path() / "c.vtk");

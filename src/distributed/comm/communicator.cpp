@@ -21,7 +21,7 @@ Error in_words(const std::exception_ptr& fault) {
   } catch (const std::exception& error) {
     return {Code::internal, error.what()};
   } catch (...) {
-    return {Code::internal, "an unknown failure"};
+    return {Code::internal, "unknown failure"};
   }
 }
 

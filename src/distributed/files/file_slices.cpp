@@ -127,7 +127,7 @@ void FileSlices::read_shapes(MeshSlice& slice) const {
         throw InputError(head_.path,
                          fmt::format("cell {} (counted from 0) is of VTK's type {}",
                                      first_cell + static_cast<GlobalIndex>(c), numbers[c]),
-                         "the type is not understood");
+                         "the type is not supported");
       }
       slice.shapes.push_back(*shape);
     }

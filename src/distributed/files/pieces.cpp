@@ -237,11 +237,11 @@ Notes losses_in_vtkhdf(const PieceSchema& schema) {
     const std::string where =
         fmt::format("'{}' on {}", array.name, array.is_on_vertices() ? "vertices" : "cells");
     if (array.source == Source::texts) {
-      notes.push_back(fmt::format("the array {} is not in the pieces: VTKHDF has no place for it", where));
+      notes.push_back(fmt::format("the array {} is not in the pieces: VTKHDF cannot hold it", where));
     } else if (array.attributes.find(" ComponentName") != std::string::npos || !array.inside.empty()) {
       notes.push_back(fmt::format(
-          "the names of components and the information of the array {} are not in the pieces: VTKHDF has no "
-          "place for them",
+          "the names of components and the information of the array {} are not in the pieces: VTKHDF "
+          "cannot hold them",
           where));
     }
   }

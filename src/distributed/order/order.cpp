@@ -161,7 +161,7 @@ void check_options(const DistributedOptions& options) {
                 methods.end());
   if (std::none_of(methods.begin(), methods.end(),
                    [&](const MethodInfo& method) { return method.name == options.vertices; })) {
-    throw InvalidArgument("there is no vertex order '" + options.vertices + "' within parts; known are " +
+    throw InvalidArgument("there is no vertex order '" + options.vertices + "' within parts; known: " +
                           join(
                               methods, [](const MethodInfo& method) -> const auto& { return method.name; }));
   }

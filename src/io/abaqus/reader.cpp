@@ -155,7 +155,7 @@ class DeckReader {
     constexpr std::array<std::string_view, 6> kGenerators{"NGEN", "NFILL", "NCOPY",
                                                           "NMAP", "ELGEN", "ELCOPY"};
     if (std::find(kGenerators.begin(), kGenerators.end(), card.keyword) != kGenerators.end()) {
-      lines_.fail(line_, card.title + " makes nodes or elements that have no lines to move",
+      lines_.fail(line_, card.title + " makes nodes or elements without lines that could move",
                   "let a preprocessor write all nodes and elements");
     }
     if (card.keyword == "NODE") return read_nodes(card, std::move(text));
@@ -167,8 +167,7 @@ class DeckReader {
     }
     std::string_view line;
     if (card.keyword == "SYSTEM" && lines_.peek(line) && !line.starts_with('*')) {
-      lines_.at().fail("*SYSTEM gives coordinates in a system of their own",
-                       "write the deck in global coordinates");
+      lines_.at().fail("*SYSTEM gives coordinates in a local system", "write the deck in global coordinates");
     }
   }
 
@@ -263,8 +262,7 @@ class DeckReader {
     refuse_in_assembly("*NODE");
     const std::string_view system = card.value("SYSTEM");
     if (!system.empty() && !same_but_for_case(system, "R")) {
-      lines_.fail(line_, "*NODE gives coordinates in a system of their own",
-                  "write the deck in global coordinates");
+      lines_.fail(line_, "*NODE gives coordinates in a local system", "write the deck in global coordinates");
     }
     const std::string set(card.value("NSET"));
     text = with_input(card, std::move(text));

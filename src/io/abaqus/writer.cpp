@@ -131,7 +131,7 @@ class DeckWriter {
     }
     if (!more_of_nodes_.empty()) {
       notes_.push_back(fmt::format(
-          "fields after the coordinates of {} stay as they are, and are not understood",
+          "fields after the coordinates of {} are not supported and stay as they are",
           more_of_nodes_.size() == 1 ? "a node" : fmt::format("{} nodes", more_of_nodes_.size())));
     }
     if (!more_of_elements_.empty()) {
@@ -373,7 +373,7 @@ class DeckWriter {
       set.name = fmt::format("label_{}", label);
       sets.push_back(std::move(set));
     }
-    notes_.emplace_back("labels of cells are written as sets of the names label_N");
+    notes_.emplace_back("labels of cells are written as sets named label_N");
   }
 
   const Mesh& mesh_;

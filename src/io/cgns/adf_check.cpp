@@ -94,13 +94,13 @@ class AdfCheck {
 
   void check_node(std::uint64_t at, int level) {
     poll();
-    if (level > kDeepestNode) fail(at, "nodes lie too deep");
+    if (level > kDeepestNode) fail(at, "nodes are nested too deeply");
     if (!seen_.insert(at).second) fail(at, "a node has two parents");
     expect_tag(at, "NoDe");
     expect_tag(at + kNode - kTag, "TaiL");
     const std::uint64_t children = number(at + kChildrenAt, kDigits);
     const std::uint64_t entries = number(at + kChildrenAt + kDigits, kDigits);
-    if (children > entries) fail(at, "a node has more children than places for them");
+    if (children > entries) fail(at, "a node has more children than entries for them");
     if (children > 0) check_children(pointer(at + kChildrenAt + 2 * kDigits), children, entries, level);
     check_data(at);
   }
@@ -111,7 +111,7 @@ class AdfCheck {
     const std::uint64_t first = table + kTag + kPointer;
     if (entries > file_.size() / kEntry) fail(table, "a node has more children than the file can hold");
     const std::uint64_t end = first + entries * kEntry;
-    if (pointer(table + kTag) != end) fail(table, "the end of the children is somewhere else");
+    if (pointer(table + kTag) != end) fail(table, "the table of children has a wrong end");
     expect_tag(end, "snTE");
     for (std::uint64_t c = 0; c < children; ++c) {
       check_node(pointer(first + c * kEntry + kName), level + 1);
@@ -150,7 +150,7 @@ class AdfCheck {
     expect_tag(table, "DCtb");
     const std::uint64_t first = table + kTag + kPointer;
     const std::uint64_t end = first + chunks * 2 * kPointer;
-    if (pointer(table + kTag) != end) fail(table, "the end of the chunks of values is somewhere else");
+    if (pointer(table + kTag) != end) fail(table, "the table of chunks has a wrong end");
     expect_tag(end, "dcTE");
     std::uint64_t sum = 0;
     for (std::uint64_t at = first; at < end; at += 2 * kPointer) sum += bytes_of_chunk(pointer(at));

@@ -279,7 +279,7 @@ class AttachmentReader {
 
   void read_connection(Node& node, const std::string& path) {
     if (node.label == "GridConnectivity1to1_t") {
-      reading_.fail(path, "connects zones by ranges of points, which an order would break",
+      reading_.fail(path, "connects zones by ranges of points, which a new order would break",
                     "save it as GridConnectivity_t with PointList and PointListDonor");
     }
     if (node.label == "OversetHoles_t") read_holes(node, path);

@@ -48,7 +48,7 @@ class Hdf5Check {
     const std::string what = fmt::format("{}: the attribute '{}'", path.empty() ? "/" : path, name);
     const Handle attribute(H5Aopen(group, name, H5P_DEFAULT), H5Aclose);
     if (!attribute.is_open()) {
-      fail(what + " is not there", "it may be an HDF5 file other than CGNS");
+      fail(what + " is missing", "it may be an HDF5 file other than CGNS");
     }
     const Handle type(H5Aget_type(attribute.id()), H5Tclose);
     const Handle space(H5Aget_space(attribute.id()), H5Sclose);
@@ -62,10 +62,10 @@ class Hdf5Check {
   }
 
   void check_group(hid_t group, const std::string& path, int level) {
-    if (level > kMostLevels) fail(path + ": nodes lie too deep");
+    if (level > kMostLevels) fail(path + ": nodes are nested too deeply");
     H5O_info_t info;
     if (H5Oget_info(group, &info) < 0 || !seen_.insert(info.addr).second) {
-      fail(path + " has two places in the file");
+      fail(path + " is in the file twice");
     }
     (void)text_of(group, path, "name", 33);
     (void)text_of(group, path, "label", 33);

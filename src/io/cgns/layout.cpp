@@ -301,7 +301,7 @@ class Addition {
       const Section& section = metadata_.sections[s];
       if (count != index_size(numbering_.cells_of(s))) {
         notes_.push_back(
-            fmt::format("{} values of the array '{}' are not written: CGNS has no place for values on a part "
+            fmt::format("{} values of the array '{}' are not written: CGNS cannot hold values on a part "
                         "of a boundary",
                         count, array.name));
         continue;

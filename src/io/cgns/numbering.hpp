@@ -67,7 +67,7 @@ class Numbering {
 };
 
 /// Adds nodes to `metadata` for the arrays and sets that have no fields or lists there. Notes the arrays and
-/// sets that CGNS has no place for.
+/// sets that CGNS cannot hold.
 void add_missing(const Mesh& mesh, CgnsMetadata& metadata, const Numbering& numbering, Notes& notes);
 
 /// Fills in the values of a node that has a field, in the present order of the mesh.

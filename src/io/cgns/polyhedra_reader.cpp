@@ -125,7 +125,7 @@ class PolyhedraReader {
         if (starts[e + 1] < starts[e]) fail_at("ends before it begins by ElementStartOffset");
         size = static_cast<std::size_t>(starts[e + 1] - starts[e]);
       } else {
-        if (at == numbers.size()) fail_at("is not there: ElementConnectivity ends before");
+        if (at == numbers.size()) fail_at("is missing: ElementConnectivity ends before it");
         if (std::cmp_less(numbers[at], 0)) fail_at(fmt::format("counts {} members", numbers[at]));
         size = static_cast<std::size_t>(numbers[at++]);
       }
@@ -260,8 +260,7 @@ void turn_by_volumes(Reading& reading, Index first, const std::string& path, Ind
         path, contradictions));
   } else if (sign < 0) {
     reading.notes.push_back(fmt::format(
-        "the signs of the faces in '{}' say that their normals point into the cells, and are taken the other "
-        "way",
+        "the normals of the faces in '{}' point into the cells by their signs; the signs are reversed",
         path));
   } else {
     return;

@@ -165,7 +165,7 @@ class MeshReader {
       }
       if (axis->size() != static_cast<std::uint64_t>(zone.vertices)) {
         reading_.fail(axis_path, fmt::format("has {} values for {} vertices", axis->size(), zone.vertices),
-                      "ghost vertices (Rind_t) are not understood");
+                      "ghost vertices (Rind_t) are not supported");
       }
       mesh.points.resize(zone.first_vertex + axis->size(), Point{0, 0, 0});
       with_numbers(numbers_of(*axis), [&](const auto& values) {
@@ -366,7 +366,7 @@ void refuse_types_of_version_30(const Reading& reading, const Node& node, const 
     std::memcpy(&type, node.bytes.data(), sizeof type);
     if (type > 12 && type < 22) {
       reading.fail(path, "uses an element type number of CGNS 3.0, which means another type since 3.1",
-                   "renew the file by `cgnsupdate IN OUT`");
+                   "update the file with `cgnsupdate IN OUT`");
     }
   }
   for (const Node& child : node.children) refuse_types_of_version_30(reading, child, path + "/" + child.name);

@@ -103,7 +103,7 @@ class TreeReader {
     const int number = file_.number();
     const std::string place = parent.empty() ? "the root" : parent;
     if (depth > kDeepest || nodes_left_-- == 0) {
-      file_.fail(place + ": nodes lie too deep or are too many");
+      file_.fail(place + ": nodes are too many or nested too deeply");
     }
     int link = 0;
     file_.check(cgio_is_link(number, id, &link), place);
@@ -153,7 +153,7 @@ class TreeReader {
     const std::size_t width = size_of_type(node.type);
     if (width == 0) {
       file_.fail(fmt::format("{} has values of the type '{}'", path, node.type),
-                 "known are C1, B1, I4, I8, U4, U8, R4 and R8");
+                 "known: C1, B1, I4, I8, U4, U8, R4 and R8");
     }
     int rank = 0;
     std::array<cgsize_t, CGIO_MAX_DIMENSIONS> dimensions{};
@@ -201,7 +201,7 @@ class TreeWriter {
     for (std::size_t k = 0; k < node.dimensions.size(); ++k) {
       if (!std::in_range<cgsize_t>(node.dimensions[k])) {
         file_.fail(fmt::format("{} has {} values", path, node.dimensions[k]),
-                   "a CGNS library of 64-bit sizes would write it");
+                   "use a build with a CGNS library of 64-bit sizes");
       }
       dimensions.at(k) = static_cast<cgsize_t>(node.dimensions[k]);
     }
@@ -229,7 +229,7 @@ Tree read_open(const InputFile& input, const FilePath& counted, const std::strin
   const std::string path = input.path_for_libraries();
   int type = CGIO_FILE_NONE;
   if (cgio_check_file(path.c_str(), &type) != CGIO_ERR_NONE || type == CGIO_FILE_NONE) {
-    throw InputError(name, "is neither a file of HDF5 nor of ADF, as CGNS's are", "check the file");
+    throw InputError(name, "is neither an HDF5 nor an ADF file", "a CGNS file is one of these");
   }
   count_file(counted, input.size());
   Tree tree;

@@ -129,7 +129,7 @@ std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck, const 
   for (const EntitySet& wanted : of_deck) {
     const EntitySet* const set = in_mesh.set(wanted.name, wanted.association);
     if (set != nullptr && is_as_in_deck(*set, wanted, numbers.of(wanted.association))) continue;
-    notes.push_back(fmt::format("the set '{}' of {} is written as the deck has it; changes of it are lost",
+    notes.push_back(fmt::format("the set '{}' of {} is written as the deck has it; changes to it are lost",
                                 wanted.name, to_string(wanted.association)));
   }
   return added;

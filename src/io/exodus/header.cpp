@@ -28,7 +28,7 @@ class HeaderReader {
     at_ = 3;
     const int version = static_cast<unsigned char>(byte());
     if (version != 1 && version != 2 && version != 5)
-      fail(fmt::format("the version of netCDF is {}", version), "1, 2 and 5 are known");
+      fail(fmt::format("the version of netCDF is {}", version), "1, 2 and 5 are supported");
     wide_ = version == 5;
     wide_offsets_ = version != 1;
     records_ = count();
@@ -77,7 +77,7 @@ class HeaderReader {
   std::uint64_t list(std::uint64_t tag, std::uint64_t least, const char* of) {
     const std::uint64_t found = integer(4);
     const std::uint64_t length = count();
-    if (found != (length == 0 && found == 0 ? 0 : tag)) fail(fmt::format("the list of {} is not there", of));
+    if (found != (length == 0 && found == 0 ? 0 : tag)) fail(fmt::format("the list of {} is missing", of));
     if (length > size_ / least)
       fail(fmt::format("the header claims {} {}", length, of), "the file is too small for them");
     return length;
@@ -114,7 +114,7 @@ class HeaderReader {
                          std::uint64_t width) {
     std::uint64_t bytes = width;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      if (places[i] >= lengths_.size()) fail(name + " has a dimension that is not there");
+      if (places[i] >= lengths_.size()) fail(name + " has a dimension that does not exist");
       const std::uint64_t length = lengths_[places[i]];
       if (i == 0 && length == 0) continue;  // this dimension counts the records
       if (length > size_ / std::max<std::uint64_t>(1, bytes))

@@ -95,8 +95,7 @@ NcInput::NcInput(const FilePath& path) : name_(path.string()) {
   } else if (start.starts_with("\x89HDF\r\n\x1a\n")) {
     require_whole_hdf5(on_disk ? file_->path_for_libraries() : "", memory_, name_);
   } else {
-    throw InputError(Location{name_, 0, 0}, "is not a file of netCDF",
-                     "an Exodus file begins with CDF or HDF");
+    throw InputError(Location{name_, 0, 0}, "is not a netCDF file", "an Exodus file begins with CDF or HDF");
   }
   if (on_disk) {
     std::size_t buffer = kBuffer;
@@ -256,7 +255,8 @@ std::string NcInput::text(const Variable& variable, const std::string& attribute
 
 void NcInput::read(const Variable& variable, const std::vector<std::size_t>& starts,
                    const std::vector<std::size_t>& counts, std::int32_t* values) const {
-  if (!is_whole(variable.type)) fail(variable.name + " has no whole numbers", "numbers of nodes are whole");
+  if (!is_whole(variable.type))
+    fail(variable.name + " does not hold whole numbers", "numbers of nodes are whole");
   if (product(counts) == 0) return;
   const int status = nc_get_vara_int(id_, variable.id, starts.data(), counts.data(), values);
   if (status == NC_ERANGE)
@@ -271,7 +271,7 @@ std::vector<std::int64_t> NcInput::integers(const Variable& variable) const {
 
 std::vector<std::int64_t> NcInput::integers(const Variable& variable, const std::vector<std::size_t>& starts,
                                             const std::vector<std::size_t>& counts) const {
-  if (!is_whole(variable.type)) fail(variable.name + " has no whole numbers");
+  if (!is_whole(variable.type)) fail(variable.name + " does not hold whole numbers");
   static_assert(sizeof(long long) == sizeof(std::int64_t));
   (void)size(variable);  // throws if the file is too small for its values
   std::vector<long long> values(claimed(variable.name, product(counts), 2 * sizeof(long long)));
@@ -282,7 +282,7 @@ std::vector<std::int64_t> NcInput::integers(const Variable& variable, const std:
 
 std::vector<double> NcInput::reals(const Variable& variable, const std::vector<std::size_t>& starts,
                                    const std::vector<std::size_t>& counts) const {
-  if (size_of(variable.type) == 0 || variable.type == kChar) fail(variable.name + " has no numbers");
+  if (size_of(variable.type) == 0 || variable.type == kChar) fail(variable.name + " does not hold numbers");
   (void)size(variable);  // throws if the file is too small for its values
   std::vector<double> values(claimed(variable.name, product(counts), sizeof(double)));
   if (values.empty()) return values;
@@ -317,7 +317,7 @@ Values NcInput::values(const Variable& variable, const std::vector<std::size_t>&
                        const std::vector<std::size_t>& counts) const {
   (void)size(variable);  // throws if the file is too small for its values
   Values result = values_of_type(alternative_of(variable.type));
-  if (are_texts(result)) fail(variable.name + " has no numbers");
+  if (are_texts(result)) fail(variable.name + " does not hold numbers");
   with_numbers(result, [&]<class Number>(std::vector<Number>& numbers) {
     numbers.resize(claimed(variable.name, product(counts), sizeof(Number)));
     if (numbers.empty()) return;

@@ -90,7 +90,7 @@ void check_classic_header(const std::string& file, const std::function<std::stri
 /// A file that is read.
 class NcInput {
  public:
-  /// Opens a file. Throws InputError if it does not exist or is not a file of netCDF.
+  /// Opens a file. Throws InputError if it does not exist or is not a netCDF file.
   explicit NcInput(const FilePath& path);
   ~NcInput();
   NcInput(const NcInput&) = delete;

@@ -109,7 +109,7 @@ void refuse_unknown_kinds(const NcInput& file) {
   }};
   for (const auto& [name, words] : kKinds) {
     if (const std::size_t length = file.length(name); length > 0)
-      file.fail(fmt::format("has {} {}", length, words), "blocks of elements are understood");
+      file.fail(fmt::format("has {} {}", length, words), "only blocks of elements are supported");
   }
 }
 
@@ -174,7 +174,7 @@ void read_points(Reading& reading) {
   for (std::size_t k = 0; k < dimension && (all != nullptr || nodes > 0); ++k) {
     const Variable* const variable = all != nullptr ? all : reading.take(kNames[k]);
     if (variable == nullptr)
-      file.fail(fmt::format("{} is not there", kNames[k]), "the points need coordinates");
+      file.fail(fmt::format("{} is missing", kNames[k]), "the points need coordinates");
     if (all == nullptr) reading.require_shape(*variable, {nodes});
     const std::vector<double> values =
         all != nullptr ? file.reals(*all, {k, first}, {1, count}) : file.reals(*variable, {first}, {count});
@@ -344,7 +344,7 @@ void read_block(Reading& reading, std::size_t b, const Variable* connect) {
   if (file.find("ebepecnt" + number) != nullptr || file.find("facconn" + number) != nullptr ||
       file.find("edgconn" + number) != nullptr || shape.size() != 2) {
     file.fail(fmt::format("block {} (id {}) has elements of type '{}'", b + 1, block.id, block.type),
-              "elements with a fixed number of nodes are understood");
+              "only elements with a fixed number of nodes are supported");
   }
   if (shape[0] > static_cast<std::size_t>(reading.elements - reading.block_ends.back()))
     file.fail(fmt::format("connect{} has more elements than num_elem, {}, leaves", b + 1, reading.elements));
@@ -358,7 +358,7 @@ void read_block(Reading& reading, std::size_t b, const Variable* connect) {
         fmt::format("block {} (id {}) has elements of type '{}' with {} nodes", b + 1, block.id, block.type,
                     shape[1]),
         "spheres, bars, triangles, quadrilaterals, shells, tetrahedra, pyramids, wedges and hexahedra are "
-        "understood");
+        "supported");
   }
   block.shape = *found;
   block.nodes = static_cast<int>(shape[1]);
@@ -465,8 +465,7 @@ void read_maps(Reading& reading) {
   if (metadata.has_node_numbers) part.vertex_ids = kNodeNumbers;
   if (metadata.has_element_numbers) part.cell_ids = kElementNumbers;
   if (reading.take("elem_map") != nullptr) {
-    reading.notes.emplace_back(
-        "the order map of elements, elem_map, is left out: the new order takes its place");
+    reading.notes.emplace_back("the order map of elements, elem_map, is left out: the new order replaces it");
   }
   read_named_maps(reading, "node", "nm", Association::vertices, metadata.node_maps);
   read_named_maps(reading, "elem", "em", Association::cells, metadata.element_maps);
@@ -496,7 +495,7 @@ bool is_of_nodes_or_elements(const Reading& reading, const Dimension& dimension)
          dimension.length == static_cast<std::size_t>(reading.elements);
 }
 
-/// Keeps the variables and dimensions that are not understood, unless they depend on the order of the mesh.
+/// Keeps the variables and dimensions that are not supported, unless they depend on the order of the mesh.
 void keep_others(Reading& reading) {
   const NcInput& file = reading.file;
   ExodusMetadata& metadata = *reading.metadata;
@@ -519,9 +518,9 @@ void keep_others(Reading& reading) {
       return is_of_nodes_or_elements(reading, dimension);
     });
     if (moves || size_of(variable.type) == 0) {
-      reading.notes.push_back(fmt::format("the variable {} is left out: it {}", variable.name,
-                                          moves ? "belongs to nodes or elements in a way that is not known"
-                                                : "has no numbers or characters"));
+      reading.notes.push_back(fmt::format(
+          "the variable {} is left out: it {}", variable.name,
+          moves ? "belongs to nodes or elements in an unknown way" : "has no numbers or characters"));
       continue;
     }
     metadata.plain.push_back({variable.name, variable.type, std::move(dimensions),

@@ -128,7 +128,7 @@ class SeriesPlanner {
     const std::size_t steps = std::max<std::size_t>(1, planning_.metadata.steps);
     if (steps > 1) {
       planning_.notes.push_back(
-          fmt::format("the variable '{}' has the same values in all {} steps", name, steps));
+          fmt::format("the variable '{}' is written with the same values in all {} steps", name, steps));
     }
     plans_.push_back({.name = name,
                       .type = type_for(array),

@@ -147,8 +147,7 @@ class SetReader {
     set.type = variable->type;
     const Variable* const sides = is_sides_ ? reading_.take(fmt::format("side_ss{}", number)) : nullptr;
     if (is_sides_ && sides == nullptr) {
-      reading_.file.fail(fmt::format("side_ss{} is not there", number),
-                         "a side set names elements and sides");
+      reading_.file.fail(fmt::format("side_ss{} is missing", number), "a side set names elements and sides");
     }
     const std::size_t size = reading_.file.size(*variable);
     if (size == 0) return add_empty(set);

@@ -53,7 +53,7 @@ View read_view_head(NumberReader& source, std::string_view section) {
       source.fail(fmt::format("the number of components is {}", value), "1, 3 and 9 are usual");
     }
     if (!std::in_range<std::int32_t>(value)) {
-      source.fail("an integer tag is " + std::to_string(value), "that is too large");
+      source.fail("an integer tag is " + std::to_string(value), "it is too large");
     }
     view.integers[i] = static_cast<std::int32_t>(value);
   }
@@ -97,7 +97,7 @@ void find_rule(const ReadContext& reading, const Entries& entries, View& view) {
     view.nodes = entries.nodes.front();
     return;
   }
-  reading.source.fail("$ElementNodeData has values for other numbers of nodes than its elements have",
+  reading.source.fail("$ElementNodeData gives elements other numbers of nodes than they have",
                       "give values for all nodes or for the corners");
 }
 

@@ -321,7 +321,7 @@ const std::vector<double>* parameters_of(const Mesh& mesh);
 /// sets of cells and the entities that it may have kept from an earlier conversion.
 void classify(GmshMetadata& layout, WriteContext& output, Notes& notes);
 
-/// Adds a view for an array that has no view yet, or a note if Gmsh has no place for it.
+/// Adds a view for an array that has no view yet, or a note if Gmsh cannot hold it.
 void add_view(GmshMetadata& layout, const DataArray& array, Notes& notes);
 
 /// If an array of a view was replaced, adapts the view to the components of the new array. A view that cannot

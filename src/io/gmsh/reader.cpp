@@ -61,9 +61,9 @@ void read_format(ReadContext& reading) {
     source.fail("the file type is " + std::to_string(file_type), "0 (text) and 1 (binary) are possible");
   }
   if (file_type == 1 && data_size != 8) {
-    source.fail(
-        "the data size is " + std::to_string(data_size),
-        "only binary files with 8 are read; meshio convert --output-format gmsh OLD.msh NEW.msh makes one");
+    source.fail("the data size is " + std::to_string(data_size),
+                "only binary files with 8 are supported; meshio convert --output-format gmsh OLD.msh NEW.msh "
+                "makes one");
   }
   reading.metadata.header = source.scanner.all().substr(begin, source.scanner.byte() - begin);
   (void)source.scanner.raw_line();
@@ -101,7 +101,7 @@ void read_names(ReadContext& reading) {
       const auto number = [&](const char* what) {
         const std::int64_t value = source.text_integer(what);
         if (!std::in_range<std::int32_t>(value))
-          source.fail(fmt::format("{} is {}", what, value), "it has 32 bits at most");
+          source.fail(fmt::format("{} is {}", what, value), "it must fit 32 bits");
         return static_cast<std::int32_t>(value);
       };
       name.dimension = number("the dimension of a physical group");
@@ -161,7 +161,7 @@ void read_verbatim(ReadContext& reading, const std::string& section) {
         fmt::format("the section ${} from line {} on holds numbers of unknown meaning, which reordering "
                     "could invalidate",
                     section, line - 1),
-        "take it out of the file, or keep it as $Comments");
+        "remove it from the file, or rename it to $Comments");
   }
   keep_verbatim(reading, section, begin);
 }

@@ -85,11 +85,11 @@ void Session::require_no_fault(const std::string& file) const {
   if (faults.words.front() != '\0') {
     throw InputError(file,
                      std::string("HDF5 could not read or write all of it (") + faults.words.data() + ")",
-                     "is the disk full, or does it fail?");
+                     "is the disk full or failing?");
   }
   // parts of the library ignore a failed malloc; a later failure then gives another cause or no cause
   if (faults.memory || errno == ENOMEM)
-    throw InputError(file, "HDF5 had no memory for a part of it", "the file may be damaged");
+    throw InputError(file, "HDF5 had too little memory for a part of it", "the file may be damaged");
 }
 
 void Session::require_no_failure(const std::string& file) const {

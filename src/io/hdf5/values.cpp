@@ -81,7 +81,7 @@ DatasetInfo File::info(const std::string& path) const {
   info.alternative = alternative_of(type.id());
   if (info.alternative == native_types().size()) {
     fail(path, "does not hold plain numbers",
-         "whole numbers of 8 to 64 bits, float and double are understood");
+         "whole numbers of 8 to 64 bits, float and double are supported");
   }
   const int rank = H5Sget_simple_extent_ndims(space.id());
   if (rank < 0 || H5Sget_simple_extent_type(space.id()) == H5S_NULL) {
@@ -112,7 +112,7 @@ void File::require_stored(const std::string& path, const Handle& dataset, std::u
                           std::uint64_t bytes_each, std::string_view what) const {
   if (count <= most_bytes(dataset.id()) / bytes_each) return;
   fail(path,
-       fmt::format("claims {} {}, but only {} bytes are there", count, what,
+       fmt::format("claims {} {}, but only {} bytes are stored", count, what,
                    H5Dget_storage_size(dataset.id())),
        "it may never have been written, or the file is damaged");
 }

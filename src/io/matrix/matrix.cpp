@@ -51,8 +51,7 @@ void note_all_unsupported(const Mesh& mesh, std::string_view format,
                           std::span<const DataArray* const> written, Notes& notes) {
   // the points of a matrix came from another file: they are not lost
   if (stored_matrix(mesh) == nullptr && has_places(mesh)) {
-    notes.push_back(
-        fmt::format("the coordinates of vertices are not written: {} has no place for them", format));
+    notes.push_back(fmt::format("the coordinates of vertices are not written: {} cannot hold them", format));
   }
   for (const DataArray& array : mesh.data) {
     if (std::find(written.begin(), written.end(), &array) == written.end()) {

@@ -51,7 +51,7 @@ bool is_whole(const DataArray& array);
 double real_value(const DataArray& array, Offset at);
 std::int64_t whole_value(const DataArray& array, Offset at);
 
-/// Notes the parts of a mesh that a file of a matrix or graph has no place for: coordinates, sets, ids, and
+/// Notes the parts of a mesh that a file of a matrix or graph cannot hold: coordinates, sets, ids, and
 /// arrays that are not in `written`.
 void note_all_unsupported(const Mesh& mesh, std::string_view format,
                           std::span<const DataArray* const> written, Notes& notes);

@@ -66,7 +66,7 @@ struct MatrixMetadata final : StoredMatrix {
   [[nodiscard]] std::vector<std::string> contents() const override {
     std::vector<std::string> result;
     if (is_half) {
-      result.push_back(fmt::format("that the matrix is {} and the file holds one half of it", symmetry));
+      result.push_back(fmt::format("the storage of one half of the {} matrix", symmetry));
     }
     if (!comments.empty()) result.emplace_back("the matrix's comments");
     return result;
@@ -82,7 +82,7 @@ Enum parse_word(const Scanner& at, std::string_view word) {
     if (same_but_for_case(word, name)) return value;
   }
   at.fail(fmt::format("the {} of the matrix is '{}'", EnumNames<Enum>::kind, shown(word)),
-          "known are " + names_of<Enum>());
+          "known: " + names_of<Enum>());
 }
 
 class MatrixReader {

@@ -132,7 +132,7 @@ class GraphReader {
 
   [[noreturn]] void fail_neighbour(const Scanner& in, std::int64_t number) const {
     if (number < 1) fail_small(in, "a neighbour", number, 1);
-    if (number <= mesh_.vertex_count()) in.fail("the vertex names itself", "leave that out");
+    if (number <= mesh_.vertex_count()) in.fail("the vertex names itself", "remove its number");
     in.fail(fmt::format("a neighbour is {}", number),
             fmt::format("1 to {} are possible", mesh_.vertex_count()));
   }
@@ -195,7 +195,7 @@ class GraphReader {
     std::ranges::sort(neighbours, comes_before);
     const auto twice = std::ranges::adjacent_find(neighbours, {}, &Neighbour::vertex);
     if (twice != neighbours.end())
-      in.fail(fmt::format("the vertex names {} twice", twice->vertex + 1), "once is right");
+      in.fail(fmt::format("the vertex names {} twice", twice->vertex + 1), "name it once");
   }
 
   [[nodiscard]] std::span<Neighbour> neighbours_of(Index v) {
@@ -412,8 +412,8 @@ void write_graph(const Mesh& mesh, const FilePath& path, Notes& notes) {
         fmt::format("{} lines from a vertex to itself are not written: a graph has no loops", graph.loops));
   }
   if (graph.repeated > 0) {
-    notes.push_back(fmt::format(
-        "{} lines that join vertices once more are not written: a graph has an edge once", graph.repeated));
+    notes.push_back(
+        fmt::format("{} repeated lines are not written: a graph has each edge once", graph.repeated));
   }
   note_all_unsupported(mesh, "METIS's graph", std::array{edge_weights, sizes, vertex_weights}, notes);
   if (own == nullptr) note_metadata_unsupported(mesh, "METIS's graph", notes);

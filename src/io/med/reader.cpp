@@ -67,7 +67,7 @@ void check_version(const Reading& reading) {
   const auto major = reading.file.integer_attribute("/INFOS_GENERALES", "MAJ");
   if (major && *major < 3) {
     throw InputError(reading.file.name(), fmt::format("is of version {} of MED", *major),
-                     "write it in version 3 or 4 by medimport, which comes with MED's library");
+                     "write it in version 3 or 4 with medimport of the MED library");
   }
 }
 
@@ -134,7 +134,7 @@ Index row_count_of(const Reading& reading, const std::string& path, std::size_t 
     reading.fail(path, fmt::format("has {} values, which do not make rows of {}", size, width));
   }
   if (size / width > static_cast<std::uint64_t>(kMaxIndex)) {
-    reading.fail(path, fmt::format("has {} rows", size / width), "2,147,483,647 is the most");
+    reading.fail(path, fmt::format("has {} rows", size / width), "at most 2,147,483,647 are possible");
   }
   return static_cast<Index>(size / width);
 }
@@ -164,7 +164,7 @@ void read_points(Reading& reading) {
   });
 }
 
-/// Throws for a group of cells that are not understood.
+/// Throws for a group of cells that are not supported.
 [[noreturn]] void fail_at_type(const Reading& reading, const std::string& path, const std::string& name) {
   if (name == "POG" || name == "POG2") reading.fail(path, "has polygons", std::string(kCutCells));
   if (name == "POE") reading.fail(path, "has polyhedra", std::string(kCutCells));
@@ -172,7 +172,7 @@ void read_points(Reading& reading) {
   reading.fail(
       path, "has cells of an unknown type",
       "points, lines, triangles, quadrilaterals, tetrahedra, pyramids, wedges and hexahedra of first "
-      "and second order are understood");
+      "and second order are supported");
 }
 
 /// Reads the nodes of the cells of a type, in the order of the file.
@@ -184,7 +184,7 @@ void read_cells(Reading& reading, const GeometryType& type) {
   }
   const std::string profile = reading.file.text_attribute(group, "PFL").value_or(std::string(kNoProfile));
   if (!profile.empty() && profile != kNoProfile) {
-    reading.fail(group, fmt::format("has the cells of the profile '{}' only", profile),
+    reading.fail(group, fmt::format("has only the cells of the profile '{}'", profile),
                  "save the mesh as one that does not change");
   }
   const auto nodes = static_cast<std::size_t>(type.nodes);
@@ -193,7 +193,7 @@ void read_cells(Reading& reading, const GeometryType& type) {
   Cells& cells = reading.mesh.cells;
   const Index first = cells.size();
   if (count > kMaxIndex - first) {
-    reading.fail(path, "is one cell too many", "a mesh has at most 2,147,483,647 cells");
+    reading.fail(path, "has too many cells", "a mesh has at most 2,147,483,647 cells");
   }
   const std::vector<Index> numbers = reading.file.read_indices(path);
   const auto last = static_cast<std::uint32_t>(reading.mesh.vertex_count());
@@ -243,7 +243,7 @@ void turn_cells(Reading& reading) {
   reading.layout->in_mesh_order = vote.sign_of_volumes() > 0;
   if (reading.layout->in_mesh_order) {
     reading.notes.push_back(
-        "the volumes are numbered as in meshio, not as in MED's library, and stay so in MED files");
+        "the nodes of volumes have the sequence of meshio, not that of the MED library; MED files keep it");
     return;
   }
   for (const auto& [type, range] : reading.ranges) {
@@ -395,7 +395,8 @@ void read_equivalence(Reading& reading, const std::string& group) {
   const std::string name = group.substr(group.rfind('/') + 1);
   const GeometryType* const type = name.starts_with("MAI.") ? geometry_type(name.substr(4)) : nullptr;
   if (name != "NOE" && type == nullptr) {
-    reading.fail(group, "pairs items that are neither nodes nor cells", "pairs of those are understood");
+    reading.fail(group, "pairs items that are neither nodes nor cells",
+                 "only pairs of nodes or of cells are supported");
   }
   Equivalence equivalence{group + "/COR", type};
   const Index pairs = row_count_of(reading, equivalence.dataset, 2);
@@ -427,7 +428,7 @@ void read_equivalences(Reading& reading) {
     reading.layout->words.push_back(fmt::format("the equivalences {}", fmt::join(names, ", ")));
 }
 
-/// Notes the datasets of the mesh that are not understood and stay as they are.
+/// Notes the datasets of the mesh that are not supported and stay as they are.
 void note_others(Reading& reading) {
   const std::string step = reading.layout->step_path() + "/";
   for (const auto& [path, rows] : reading.file.datasets()) {
@@ -437,7 +438,7 @@ void note_others(Reading& reading) {
       reading.take(path);
       continue;
     }
-    reading.notes.push_back(fmt::format("'{}' is not understood and stays as it is in MED files", path));
+    reading.notes.push_back(fmt::format("'{}' is not supported and stays as it is in MED files", path));
   }
 }
 

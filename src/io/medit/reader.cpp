@@ -118,7 +118,7 @@ class Reader {
     if (same_but_for_case(keyword, "MeshVersionFormatted")) {
       metadata_->version = in_.integer<std::int64_t>("the version");
       if (metadata_->version < 0 || metadata_->version > 4) {
-        in_.fail(fmt::format("the version is {}", metadata_->version), "1 to 4 are known");
+        in_.fail(fmt::format("the version is {}", metadata_->version), "1 to 4 are supported");
       }
     } else if (same_but_for_case(keyword, "Dimension")) {
       mesh_.dimension = in_.integer<std::int32_t>("the dimension");
@@ -177,7 +177,7 @@ class Reader {
       skip_plain(kPlainKinds[kind]);
       return keep_section(keyword);
     }
-    in_.fail("the section " + keyword + " is not understood, and its numbers may be wrong after reordering",
+    in_.fail("the section " + keyword + " is not supported, and its numbers may be wrong after reordering",
              "remove it from the file");
   }
 
@@ -228,7 +228,7 @@ class Reader {
       if (found != nodes.end()) places[found - nodes.begin()] = place;
     }
     if (std::find(places.begin(), places.end(), -1) != places.end()) {
-      notes_.push_back(fmt::format("{} is not understood: the nodes of {} keep the order of the file",
+      notes_.push_back(fmt::format("{} is not supported: the nodes of {} keep the order of the file",
                                    last_keyword_, kCellKinds[kind].keyword));
       return;
     }
@@ -338,7 +338,7 @@ class Reader {
       const bool of_triangle = columns.starts_with(".t");
       if (columns.starts_with('.') && in_.peek_word() != (of_triangle ? "3" : "2")) {
         in_.fail(fmt::format("a line of {} begins with '{}'", last_keyword_, shown(in_.peek_word())),
-                 of_triangle ? "3, for a triangle, is known" : "2, for an edge, is known");
+                 of_triangle ? "it must begin with 3, for a triangle" : "it must begin with 2, for an edge");
       }
       for (const char column : columns) {
         if (column == '.') {

@@ -23,7 +23,8 @@ class CardParser {
       : cards_(cards), place_(cards.place()), fields_(fields) {}
 
   Card parse() {
-    if (cards_.is_orphan()) fail("expected a card such as GRID, found a line that continues one", "add it");
+    if (cards_.is_orphan())
+      fail("expected a card such as GRID, found a line that continues one", "add the card");
     split_card(cards_.lines(), fields_);
     Card card;
     card.place = place_;

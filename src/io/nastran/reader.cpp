@@ -180,7 +180,7 @@ class DeckReader {
 
   void add_points(const NumberRange& range) {
     constexpr std::int64_t kMost = 10'000'000;  // numbers in one range
-    if (range.to - range.from > kMost) fail("a range of more than ten million points", "correct it");
+    if (range.to - range.from > kMost) fail("a range has more than ten million points", "correct it");
     const std::int64_t count = std::max<std::int64_t>((range.to - range.from) / range.step + 1, 0);
     claim_memory(static_cast<std::uint64_t>(count) * sizeof(std::int64_t), "a range of points");
     for (std::int64_t n = range.from; n <= range.to; n += range.step) deck_->other_points.push_back(n);
@@ -282,7 +282,7 @@ class DeckReader {
     if (file_.bulk().begin > 0) contents.emplace_back("executive and case control");
     if (has_more_in_nodes_) contents.emplace_back("displacement systems and constraints of GRID");
     if (!with_more_.list.empty()) contents.push_back("fields after the nodes of " + join(with_more_.list));
-    if (without_some_ > 0) contents.emplace_back("nodes of edges, of elements that have only some");
+    if (without_some_ > 0) contents.emplace_back("edge nodes of elements that lack some of them");
     if (!others_.list.empty()) contents.push_back("cards of the bulk data: " + join(others_.list));
   }
 

@@ -38,8 +38,8 @@ class BoundaryReader {
     }
     if (next == faces) return;
     throw InputError(file_.file(),
-                     fmt::format("the patches cover the faces {} to {} of {} to {}", internal_faces, next - 1,
-                                 internal_faces, faces - 1),
+                     fmt::format("the patches cover faces {} to {}, but the boundary has faces {} to {}",
+                                 internal_faces, next - 1, internal_faces, faces - 1),
                      kRemedy);
   }
 
@@ -88,9 +88,9 @@ class BoundaryReader {
   /// `next`.
   [[nodiscard]] std::int64_t checked(const Patch& patch, std::int64_t next) const {
     if (!patch.faces || !patch.first) {
-      file_.fail(
-          fmt::format("the patch '{}' has no number as {}", patch.name, patch.faces ? "startFace" : "nFaces"),
-          kRemedy);
+      file_.fail(fmt::format("the patch '{}' gives no number for {}", patch.name,
+                             patch.faces ? "startFace" : "nFaces"),
+                 kRemedy);
     }
     if (*patch.faces > 0 && *patch.first != next) {
       file_.fail(fmt::format("the patch '{}' begins at face {}, but face {} is next", patch.name,

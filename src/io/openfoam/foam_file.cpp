@@ -147,14 +147,14 @@ void FoamFile::read_header() {
     if (key == "arch") read_arch(value);
     if (key == "format") {
       if (value != "ascii" && value != "binary") {
-        fail(fmt::format("the format is '{}'", shown(value)), "ascii and binary are known");
+        fail(fmt::format("the format is '{}'", shown(value)), "it must be ascii or binary");
       }
       binary_ = value == "binary";
     }
   }
   if (class_ == "decomposedBlockData") {
     fail("holds the meshes of several processors",
-         "write separate files by decomposePar -fileHandler uncollated");
+         "write separate files with decomposePar -fileHandler uncollated");
   }
 }
 

@@ -214,7 +214,7 @@ class CentreReader {
       const auto end = static_cast<std::size_t>(begins[f + 1]);
       if (begin > end || end > points.size()) {
         faces_.fail(fmt::format("face {} has the points {} to {} of {}", f, begin, end, points.size()),
-                    "the places must rise");
+                    "offsets must ascend");
       }
       add(std::span(points).subspan(begin, end - begin));
     }

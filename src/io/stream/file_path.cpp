@@ -48,18 +48,18 @@ std::string read_sized(InputFile& file, const std::string& name, std::uint64_t w
   if (wanted > most) {
     throw InputError(
         name, fmt::format("has {}, more than the limit of {}", size_text(file.size()), size_text(most)),
-        "raise the limit on memory (--limit-memory) if it fits");
+        "raise the memory limit (--limit-memory) if it fits");
   }
   std::string bytes;
   resize_large(bytes, wanted);
   const std::size_t got = read_on_threads(file, bytes);
   if (got < wanted) {
     throw InputError(name, fmt::format("had {} bytes and ended after {}", file.size(), got),
-                     "it may have been written to meanwhile, or the disk fails");
+                     "the file changed while it was read, or the disk is failing");
   }
   if (char further = 0; wanted == file.size() && file.read_at(wanted, {&further, 1}) > 0) {
-    throw InputError(name, fmt::format("had {} bytes and continues after them", file.size()),
-                     "wait until it is written to the end");
+    throw InputError(name, fmt::format("grew beyond {} bytes while it was read", file.size()),
+                     "wait until it is complete");
   }
   return bytes;
 }
@@ -74,7 +74,7 @@ std::string all_of(const Read& read, const std::string& name) {
   while (const std::size_t got = read(part)) {
     if (got > most - bytes.size()) {
       throw InputError(name, "has no end within " + size_text(most),
-                       "if it has one, raise the limit on memory (--limit-memory)");
+                       "if it has one, raise the memory limit (--limit-memory)");
     }
     bytes.append(part.data(), got);
   }

@@ -18,7 +18,7 @@ namespace meshorder {
 std::filesystem::path without_gz(std::filesystem::path path);
 
 /// Returns the rest of a stream; `name` is for messages. Throws InputError for a stream that does not end
-/// within the limit on memory.
+/// within the memory limit.
 std::string read_to_end(std::istream& stream, const std::string& name);
 
 /// Files kept elsewhere than on disk.
@@ -77,7 +77,7 @@ class FilePath {
   /// Opens a file on disk. Throws InputError as `InputFile` does.
   [[nodiscard]] InputFile open() const;
   /// Returns the bytes of the file; decompresses a gzip file. Throws InputError for a folder, a device, an
-  /// unreadable or an empty file, a file that changes meanwhile or exceeds the limit on memory, and a damaged
+  /// unreadable or an empty file, a file that changes meanwhile or exceeds the memory limit, and a damaged
   /// gzip file; Unavailable for a gzip file in a build without zlib.
   [[nodiscard]] std::string read() const;
   /// Returns the first bytes of the file, at most `most`, without decompressing them. Reads a pipe to its

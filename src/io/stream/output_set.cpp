@@ -111,7 +111,7 @@ void apply_all(std::vector<Move>& moves) {
     if (!is_back[k]) fresh += (fresh.empty() ? "" : ", ") + moves[k].target().string();
   }
   const SystemFault fault = system_fault(error);
-  const std::string rest = fresh.empty() ? "" : "; the old file could not be put back of " + fresh;
+  const std::string rest = fresh.empty() ? "" : "; the old contents of " + fresh + " could not be restored";
   throw InputError(moves[failed].target().string(),
                    fmt::format("{}: {}{}", kCannotReplace, fault.reason, rest), fault.remedy);
 }

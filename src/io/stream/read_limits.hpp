@@ -73,8 +73,7 @@ inline constexpr std::uint64_t kCopiesOfClaim = 4;
 std::uint64_t left_by_last_reading();
 
 /// The advice in messages about a claim that is refused.
-inline constexpr const char* kClaimRemedy =
-    "if you trust the file, raise the limit on memory (--limit-memory)";
+inline constexpr const char* kClaimRemedy = "if you trust the file, raise the memory limit (--limit-memory)";
 
 /// As `refused_claim`, but throws InputError at `where`; if `where` has no file, names the mesh that is being
 /// read.
@@ -98,6 +97,6 @@ bool may_include(const FilePath& from, const FilePath& file);
 
 /// The advice in messages about a file that `may_include` refuses.
 inline constexpr const char* kIncludeRemedy =
-    "put it below the mesh's folder, or allow its own by --allow-includes-from";
+    "put it below the mesh's folder, or allow its own with --allow-includes-from";
 
 }  // namespace meshorder

@@ -214,7 +214,7 @@ T parse_integer(const Scanner& at, std::string_view text, std::string_view what)
   if (digits.size() > 1 && digits.front() == '+') digits.remove_prefix(1);
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (code == std::errc::result_out_of_range) {
-    at.fail(std::string(what) + " is " + shown(text), "that is too large");
+    at.fail(std::string(what) + " is " + shown(text), "it is too large");
   }
   if (code != std::errc{} || end != digits.data() + digits.size()) {
     at.fail(std::string(what) + " is '" + shown(text) + "'", "a whole number is needed");
@@ -244,7 +244,7 @@ double parse_real(const Scanner& at, std::string_view text, std::string_view wha
   if (code == std::errc::result_out_of_range && whole) {
     // underflow is 0, overflow an error
     if (digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos) return 0;
-    at.fail(std::string(what) + " is " + shown(text), "that is too large");
+    at.fail(std::string(what) + " is " + shown(text), "it is too large");
   }
   if (code != std::errc{} || !whole) {
     at.fail(std::string(what) + " is '" + shown(text) + "'", "a number is needed");

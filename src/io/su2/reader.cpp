@@ -66,7 +66,7 @@ class Su2Reader {
       in_.fail(fmt::format("expected a keyword with '=', found '{}'", shown(content)),
                keyword_.empty()
                    ? "the file may not be a mesh of SU2"
-                   : fmt::format("the number after {}= may be too small, or {}= is not understood", keyword_,
+                   : fmt::format("the number after {}= may be too small, or {}= is not supported", keyword_,
                                  keyword_));
     }
     keyword_ = upper_case(trimmed(content.substr(0, equals)));
@@ -235,7 +235,7 @@ class Su2Reader {
       metadata_->numbers_points = true;
       return;
     }
-    has_more_behind_points_ = true;
+    has_more_after_points_ = true;
     while (!in_.at_line_end()) (void)parse_real(in_, in_.word("a number"), "a number after the coordinates");
   }
 
@@ -378,14 +378,14 @@ class Su2Reader {
   }
 
   void note_numbers() {
-    if (has_more_behind_points_) {
+    if (has_more_after_points_) {
       notes_.push_back(in_.file() +
                        ": points have more numbers than coordinates; they are left out, as SU2 "
                        "does not read them");
     }
     if (!has_other_numbers_) return;
     notes_.push_back(in_.file() +
-                     ": numbers at the ends of lines are not 0, 1, 2 …; as in SU2, places count");
+                     ": numbers at the ends of lines are not 0, 1, 2 …; they are ignored, as in SU2");
   }
 
   /// Puts the nodes of wedges in the mesh's order, unless the file has them in that order.
@@ -420,7 +420,7 @@ class Su2Reader {
   std::int64_t line_of_largest_ = 0;
   bool has_points_ = false;
   bool has_other_numbers_ = false;
-  bool has_more_behind_points_ = false;
+  bool has_more_after_points_ = false;
 };
 
 }  // namespace

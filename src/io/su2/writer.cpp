@@ -87,7 +87,7 @@ struct Markers {
     if (others > 0) {
       notes.push_back(
           fmt::format("the marker '{}' is written without {} cells of the set that are not on a "
-                      "boundary: SU2 has no place for them",
+                      "boundary: SU2 cannot hold them",
                       into.name, others));
     }
     if (repeated > 0) {
@@ -105,9 +105,10 @@ struct Markers {
     if (name.empty()) name = kUnmarked;
     if (name == "SEND_RECEIVE") name += '_';  // in SU2 this name has another meaning: parts of a mesh
     name = names.take(name);
-    if (name != set.name) notes.push_back(fmt::format("the set '{}' is the marker '{}'", set.name, name));
+    if (name != set.name)
+      notes.push_back(fmt::format("the set '{}' is written as the marker '{}'", set.name, name));
     if (name.find_first_of(" \t") != std::string::npos) {
-      notes.push_back(fmt::format("the marker '{}' has a blank, which SU2 leaves out of the name", name));
+      notes.push_back(fmt::format("the marker '{}' has a blank, which SU2 drops from the name", name));
     }
     return name;
   }
@@ -125,9 +126,9 @@ struct Markers {
       marker(label == 0 ? std::string(kUnmarked) : std::to_string(label)).cells.push_back(c);
     }
     if (unmarked > 0 && mesh.format != "su2") {
-      notes.push_back(
-          fmt::format("{} boundary elements that are in no set and have no label are the marker '{}'",
-                      unmarked, kUnmarked));
+      notes.push_back(fmt::format(
+          "{} boundary elements that are in no set and have no label are written as the marker '{}'",
+          unmarked, kUnmarked));
     }
   }
 };

@@ -333,7 +333,7 @@ class Reader {
     std::string shown;
     for (const char c : keyword.substr(0, 40)) shown += c >= ' ' && c < 127 ? c : '?';
     scanner_.fail("the statement '" + shown + "' is unknown",
-                  "v, vt, vn, f, l, p, g, o, s, usemtl … are read");
+                  "v, vt, vn, f, l, p, g, o, s, usemtl … are supported");
   }
 
   void read_vertex(std::string_view line) {
@@ -341,15 +341,15 @@ class Reader {
     std::size_t count = 0;
     for (auto word = next_word(line); !word.empty(); word = next_word(line)) {
       if (count == numbers.size())
-        scanner_.fail("a vertex of more than 6 numbers", "x y z, w or r g b are right");
+        scanner_.fail("a vertex has more than 6 numbers", "give x y z, x y z w or x y z r g b");
       numbers[count] = parse_real(scanner_, word, count < 3 ? "a coordinate" : "a weight or colour");
       if (count < 3 && !std::isfinite(numbers[count]))
         scanner_.fail("a coordinate is not finite", "a finite number is needed");
       ++count;
     }
     if (count < 3 || count == 5) {
-      scanner_.fail("a vertex of " + std::to_string(count) + " numbers",
-                    "x y z, x y z w and x y z r g b are right");
+      scanner_.fail("a vertex has " + std::to_string(count) + " numbers",
+                    "give x y z, x y z w or x y z r g b");
     }
     add_vertex(numbers, count);
   }
@@ -376,9 +376,9 @@ class Reader {
       ++count;
     }
     if (count < least || count > most) {
-      scanner_.fail(fmt::format("a line {} of {} numbers", list.name, count),
+      scanner_.fail(fmt::format("a line {} has {} numbers", list.name, count),
                     least == most ? fmt::format("{} are needed", least)
-                                  : fmt::format("{} to {} are right", least, most));
+                                  : fmt::format("{} to {} are needed", least, most));
     }
     add_listed(line, list, text);
   }
@@ -427,7 +427,7 @@ class Reader {
     if (!texture.empty()) corner_texture_.push_back(place(texture, texture_));
     if (!corner.empty()) corner_normals_.push_back(place(corner, normals_));
     if ((whole.back() == '/' && !has_slash) || whole.ends_with("//")) {
-      scanner_.fail("a corner ends in a slash", "v, v/vt, v//vn and v/vt/vn are right");
+      scanner_.fail("a corner ends in a slash", "write v, v/vt, v//vn or v/vt/vn");
     }
   }
 
@@ -438,12 +438,12 @@ class Reader {
     for (auto word = next_word(line); !word.empty(); word = next_word(line)) read_corner(word);
     const std::size_t least = static_cast<std::size_t>(dimension) + 1;
     if (corners_.size() < least) {
-      scanner_.fail(fmt::format("a cell of {} vertices", corners_.size()),
+      scanner_.fail(fmt::format("a cell has {} vertices", corners_.size()),
                     fmt::format("this kind needs at least {}", least));
     }
     for (const auto* indices : {&corner_texture_, &corner_normals_}) {
       if (!indices->empty() && indices->size() != corners_.size()) {
-        scanner_.fail("corners of one cell have different numbers of indices", "write all alike");
+        scanner_.fail("corners of one cell have different numbers of indices", "write all corners alike");
       }
     }
     add_cell(dimension);
@@ -480,7 +480,7 @@ class Reader {
       if (text == "on") text = "1";
       text.erase(0, std::min(text.find_first_not_of('0'), text.size() - 1));
       if (!as_integer(text))
-        scanner_.fail("the smoothing group '" + text.substr(0, 40) + "'", "a number or off");
+        scanner_.fail("the smoothing group is '" + text.substr(0, 40) + "'", "give a number or off");
     }
     states_[i].set(text, mesh_.cell_count());
   }

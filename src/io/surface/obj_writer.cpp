@@ -72,8 +72,7 @@ class ObjWriter {
     colors_ = gather(mesh_, kColor, Association::vertices);
     if (colors_.width > 0) {
       written_.insert(colors_.from.begin(), colors_.from.end());
-      if (colors_.width == 4)
-        notes_.emplace_back("the alpha of colours is not written: OBJ has no place for it");
+      if (colors_.width == 4) notes_.emplace_back("the alpha of colours is not written: OBJ cannot hold it");
     } else {
       find_partial_colors();
     }

@@ -69,10 +69,10 @@ VertexColumns read_keyword(Scanner& scanner) {
   layout.colors = take("C");
   layout.normals = take("N");
   if (take("4") || take("n")) {
-    scanner.fail("points of more than three coordinates (4OFF, nOFF)", "OFF with x, y and z is read");
+    scanner.fail("points have more than three coordinates (4OFF, nOFF)", "only x, y and z are supported");
   }
   if (!take("OFF") || (!rest.empty() && !is_count(rest))) {
-    scanner.fail("the file does not begin with OFF", "[ST][C][N]OFF is right");
+    scanner.fail("the file does not begin with OFF", "an OFF file begins with [ST][C][N]OFF");
   }
   scanner.seek(scanner.byte() + static_cast<std::int64_t>(word.size() - rest.size()));
   std::string_view line = scanner.peek_line();
@@ -95,8 +95,8 @@ void measure_vertices(Scanner& scanner, VertexColumns& layout) {
     layout.color_width = layout.colors ? 4 : 0;
   } else {
     scanner.fail(
-        "a vertex of " + std::to_string(numbers) + " numbers",
-        std::to_string(others) + (layout.colors ? " and those of a colour are right" : " are right"));
+        "a vertex has " + std::to_string(numbers) + " numbers",
+        std::to_string(others) + (layout.colors ? " and those of a colour are needed" : " are needed"));
   }
 }
 
@@ -130,7 +130,7 @@ void read_vertices(Scanner& scanner, Index count, const VertexColumns& layout, M
   for (Point& point : mesh.points) {
     const auto expect_more = [&] {
       if (layout.one_line_each && scanner.at_line_end() && scanner.bytes_left() > 0) {
-        scanner.fail("a vertex has fewer numbers than the first one", "all need the same");
+        scanner.fail("a vertex has fewer numbers than the first one", "all need the same number");
       }
     };
     scanner.at_end();  // moves to the next line that holds something
@@ -145,7 +145,7 @@ void read_vertices(Scanner& scanner, Index count, const VertexColumns& layout, M
       }
     }
     if (layout.one_line_each && !scanner.at_line_end()) {
-      scanner.fail("a vertex has more numbers than the first one", "all need the same");
+      scanner.fail("a vertex has more numbers than the first one", "all need the same number");
     }
   }
   const std::array names{kNormal.name, kColor.name, kTexture.name};
@@ -206,7 +206,7 @@ void read_faces(Scanner& scanner, Index count, Mesh& mesh) {
   std::vector<Index> face;
   for (Index f = 0; f < count; ++f) {
     const Index size = scanner.count("the number of a face's vertices", 2);
-    if (size == 0) scanner.fail("a face without vertices", "at least one is needed");
+    if (size == 0) scanner.fail("a face has no vertices", "at least one is needed");
     face.resize(size);
     for (Index& vertex : face) {
       vertex = scanner.integer<Index>("a vertex of a face");

@@ -24,7 +24,7 @@
 namespace meshorder::ply {
 namespace {
 
-constexpr std::string_view kRemedy = "see 'element vertex N', 'property float x' …";
+constexpr std::string_view kRemedy = "a header line is like 'element vertex N' or 'property float x'";
 
 // ---- header
 
@@ -33,17 +33,17 @@ TypeWord parse_type(const Scanner& scanner, std::string_view word) {
     if (std::ranges::count(kTypeWords[type], word) > 0) return {std::string(word), static_cast<Type>(type)};
   }
   scanner.fail("the type '" + std::string(word.substr(0, 40)) + "' is unknown",
-               "char … double, int8 … float64");
+               "give char … double or int8 … float64");
 }
 
 Encoding parse_encoding(const Scanner& scanner, std::string_view line) {
   const std::string_view name = next_word(line);
-  if (next_word(line) != "1.0") scanner.fail("the version of the format is unknown", "1.0 is read");
+  if (next_word(line) != "1.0") scanner.fail("the version of the format is unknown", "1.0 is supported");
   if (name == "ascii") return Encoding::ascii;
   if (name == "binary_little_endian") return Encoding::little_endian;
   if (name == "binary_big_endian") return Encoding::big_endian;
   scanner.fail("the encoding '" + std::string(name.substr(0, 40)) + "' is unknown",
-               "ascii, binary_little_endian and binary_big_endian are read");
+               "ascii, binary_little_endian and binary_big_endian are supported");
 }
 
 Role role_of(std::string_view name) {
@@ -74,13 +74,13 @@ Property parse_property(const Scanner& scanner, std::string_view line) {
   if (property.is_list) {
     property.count_type = parse_type(scanner, next_word(line));
     if (!is_integer(property.count_type.type)) {
-      scanner.fail("a list whose length is not an integer", "uchar or int is usual");
+      scanner.fail("the length of a list is not an integer", "uchar or int is usual");
     }
     word = next_word(line);
   }
   property.type = parse_type(scanner, word);
   property.name = next_word(line);
-  if (property.name.empty()) scanner.fail("a property without a name", std::string(kRemedy));
+  if (property.name.empty()) scanner.fail("a property has no name", std::string(kRemedy));
   return property;
 }
 
@@ -236,7 +236,7 @@ void check_elements(const Scanner& scanner, PlyMetadata& header) {
 
 void read_header(Scanner& scanner, PlyMetadata& header) {
   if (trimmed(scanner.peek_line()) != "ply")
-    scanner.fail("the file does not begin with 'ply'", "PLY files do");
+    scanner.fail("the file does not begin with 'ply'", "a PLY file begins with it");
   (void)scanner.raw_line();
   bool has_format = false;
   while (scanner.bytes_left() > 0) {
@@ -300,7 +300,7 @@ struct BodyReader : NumberReader {
     if constexpr (std::is_integral_v<T>) {
       const auto value = in.integer<std::int64_t>(what);
       if (!std::in_range<T>(value)) {
-        in.fail(std::string(what) + " is " + std::to_string(value), "it does not fit the property's type");
+        in.fail(std::string(what) + " is " + std::to_string(value), "the property's type cannot hold it");
       }
       return static_cast<T>(value);
     } else if constexpr (std::is_same_v<T, double>) {
@@ -516,9 +516,9 @@ class Reader {
     if (element.role == Role::rows_of_faces || !is_corner_list(property)) return false;
     if (element.role == Role::strips) return read_strip(property);
     const Index length = body_.list_length(body_.scanner, property);
-    if (length == 0) body_.fail("a " + element.name + " without vertices", "at least one is needed");
+    if (length == 0) body_.fail("a " + element.name + " has no vertices", "at least one is needed");
     if (element.role == Role::tetrahedra && length != 4) {
-      body_.fail("a tetrahedron of " + std::to_string(length) + " vertices", "four are needed");
+      body_.fail("a tetrahedron has " + std::to_string(length) + " vertices", "four are needed");
     }
     corners_.resize(length);
     for (Index& corner : corners_) corner = vertex(body_.scanner, property);

@@ -2,7 +2,7 @@
 //
 // PLY, the Stanford triangle format: Greg Turk, "The PLY Polygon File Format" (1994),
 // https://paulbourke.net/dataformats/ply/, as text and binary in either byte order. Vertices, faces, edges
-// and tetrahedra are understood with all their properties.
+// and tetrahedra are supported with all their properties.
 #include "io/all_formats.hpp"
 #include "io/exact_values.hpp"
 #include "io/names.hpp"

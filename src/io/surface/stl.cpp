@@ -307,7 +307,7 @@ Mesh read_stl(const FilePath& path, Notes& notes) {
                      "give an ASCII or binary STL file");
   } else {
     throw InputError(Location{scanner.file(), 0, static_cast<std::int64_t>(kHeaderBytes)},
-                     fmt::format("a binary STL file of {} triangles has {} bytes, this has {}",
+                     fmt::format("a binary STL file of {} triangles has {} bytes, this one has {}",
                                  (promised - 84) / kTriangleBytes, promised, size),
                      "the file is cut short, or its count is wrong");
   }
@@ -341,7 +341,7 @@ std::vector<std::int64_t> solid_labels(const Mesh& mesh) {
 
 void note_losses(const Mesh& mesh, const DataArray* attribute, bool has_solids, Notes& notes) {
   notes.emplace_back(
-      "STL has no vertex order: readers number vertices by first appearance and take equal points as one");
+      "STL has no vertex order: readers number vertices by first appearance and merge equal points");
   std::vector<bool> used(mesh.points.size(), false);
   for (const Index v : mesh.cells.vertices) used[v] = true;
   const auto unused = std::count(used.begin(), used.end(), false);

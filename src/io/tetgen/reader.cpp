@@ -95,8 +95,7 @@ std::array<std::int64_t, N> header(Scanner& in, std::array<std::int64_t, N> stan
 
 std::int64_t checked_attributes(Scanner& in, std::int64_t attributes) {
   if (attributes < 0 || attributes > in.bytes_left()) {
-    in.fail(fmt::format("the header gives {} attributes", attributes),
-            "0 or as many as each line has are possible");
+    in.fail(fmt::format("the header gives {} attributes", attributes), "give 0, or as many as each line has");
   }
   return attributes;
 }
@@ -302,7 +301,7 @@ void read_boundary(Scanner& in, File file, ReadContext& to) {
   const int most = file == kFace ? 6 : 3;
   if (columns < least) nodes = least;  // the first record's own error says which column is missing
   if (columns > least && columns != most) {
-    in.fail(fmt::format("a line has {} columns beside its number and marker", columns),
+    in.fail(fmt::format("a line has {} columns besides its number and marker", columns),
             fmt::format("{} or {} points are possible", least, most));
   }
   read_cells(in, file, file == kFace ? Shape::triangle : Shape::line, nodes, marked, to);

@@ -23,7 +23,7 @@ namespace {
 
 constexpr char kComment = '#';
 constexpr std::string_view kFirstLine =
-    "it has the numbers of nodes, cells, and values of nodes, cells and the model";
+    "give the numbers of nodes and cells, and of values of nodes, cells and the model";
 constexpr char kBinary = '\7';  // the first byte of a binary file
 
 class Reader {
@@ -66,7 +66,7 @@ class Reader {
   }
 
   [[noreturn]] static void fail_at_more(const Scanner& in, std::string_view of, std::string_view wanted) {
-    in.fail(fmt::format("the line of {} has more than it should", of), std::string(wanted));
+    in.fail(fmt::format("the line of {} is too long", of), std::string(wanted));
   }
 
   static Index number(Scanner& in, std::string_view what) {
@@ -189,7 +189,7 @@ class Reader {
   static const CellKind& kind_named(const Scanner& in, std::string_view name) {
     if (const CellKind* const kind = find_kind(name)) return *kind;
     in.fail(fmt::format("a cell has the type '{}'", shown(name)),
-            "known are " + join(kCellKinds, [](const CellKind& kind) { return kind.name; }));
+            "known: " + join(kCellKinds, [](const CellKind& kind) { return kind.name; }));
   }
 
   // ---- data

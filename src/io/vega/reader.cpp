@@ -129,8 +129,8 @@ class Reader {
     mesh_.cell_ids = elements_.ids_unless_from(metadata_->element_base);
     if (!mesh_.vertex_ids.empty() || !mesh_.cell_ids.empty()) {
       notes_.emplace_back(
-          "vertices or elements have numbers of their own, by which they are named here; Vega itself would "
-          "count lines");
+          "vertices or elements have their own numbers, by which references name them here; Vega itself "
+          "counts lines");
     }
     metadata_->included = lines_.included();
     mesh_.format_metadata = metadata_;
@@ -246,7 +246,8 @@ class Reader {
   }
 
   void add_id(IdMap& numbering, std::int64_t id, const std::string& what) {
-    if (id < 0) lines_.at().fail(what + " has the number " + std::to_string(id), "numbers are not negative");
+    if (id < 0)
+      lines_.at().fail(what + " has the number " + std::to_string(id), "numbers must not be negative");
     if (!numbering.add(id)) {
       lines_.at().fail(what + " " + std::to_string(id) + " is given twice", "numbers must differ");
     }
@@ -389,7 +390,7 @@ class Reader {
   }
 
   void read_material(VegaSection& section, const std::string& name) {
-    if (name.empty()) lines_.at().fail("a material without a name", "write *MATERIAL and a name");
+    if (name.empty()) lines_.at().fail("a material has no name", "write *MATERIAL and a name");
     section.kind = Kind::material;
     section.title = name;
     lines_.take();
@@ -399,7 +400,7 @@ class Reader {
   }
 
   void read_set(VegaSection& section, const std::string& name) {
-    if (name.empty()) lines_.at().fail("a set without a name", "write *SET and a name");
+    if (name.empty()) lines_.at().fail("a set has no name", "write *SET and a name");
     if (!has_elements_) lines_.at().fail("*SET before *ELEMENTS", "elements come first");
     section.kind = Kind::set;
     section.set = mesh_.sets.size();
@@ -428,7 +429,7 @@ class Reader {
     std::string_view line;
     lines_.peek(line);  // the whole line, as names may have a #
     const std::size_t comma = line.find(',');
-    if (comma == std::string_view::npos) lines_.at().fail("a region without a comma", "write SET, MATERIAL");
+    if (comma == std::string_view::npos) lines_.at().fail("a region has no comma", "write SET, MATERIAL");
     section.region_set = trimmed(line.substr(0, comma));
     section.region_material = trimmed(line.substr(comma + 1));
     if (!materials_.contains(section.region_material)) {

@@ -139,7 +139,7 @@ class VegaWriter {
       add_section(Kind::set, mesh_.sets.size() + label_sets_.size());
       label_sets_.push_back(std::move(set));
     }
-    notes_.push_back("labels of cells are written as sets of the names label_N");
+    notes_.push_back("labels of cells are written as sets named label_N");
   }
 
   [[nodiscard]] const DataArray* attributes(Association association, int width) const {

@@ -182,7 +182,7 @@ InputError unknown_type(int number, Index cell, const ErrorAt& error) {
   } else {
     what += "has the type " + std::to_string(number);
   }
-  return error(what, "VTK's types 1 to 16, 21 to 37, 42, 60 to 62 and 64 to 81 are understood");
+  return error(what, "VTK's types 1 to 16, 21 to 37, 42, 60 to 62 and 64 to 81 are supported");
 }
 
 }  // namespace
@@ -228,7 +228,7 @@ bool take_cells(Mesh& mesh, FileCells& cells, const ErrorAt& error, Notes& notes
   if (unfit >= 0) {
     const std::string what = "cell " + std::to_string(unfit) + " (counted from 0) is a polyhedron ";
     if (cells.polyhedra.empty())
-      throw error(what + "without faces", ".vtu and legacy .vtk files of polyhedra are read");
+      throw error(what + "without faces", "polyhedra are read from .vtu and legacy .vtk files");
     throw error(what + "whose faces are not on its points",
                 "the points of a polyhedron are the corners of its faces");
   }

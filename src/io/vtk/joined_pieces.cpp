@@ -161,7 +161,7 @@ class PieceJoiner {
       if (!ids.empty() && !kept.empty() && ids[kept.back()] == ids[row]) {
         if (pieces_.points[kept.back()] != pieces_.points[row]) {
           throw error_(
-              fmt::format("the point of the global id {} has two places", ids[row]),
+              fmt::format("the point with the global id {} has two positions", ids[row]),
               "the pieces are of different meshes or runs, or the ids are not those of the whole mesh");
         }
       } else {

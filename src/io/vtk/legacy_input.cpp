@@ -124,8 +124,7 @@ Number LegacyInput::number(const std::string& what) {
   } else {
     using Wide = std::conditional_t<std::is_same_v<Number, std::uint64_t>, std::uint64_t, std::int64_t>;
     const Wide value = scanner.integer<Wide>(what);
-    if (!std::in_range<Number>(value))
-      fail(what + " is " + std::to_string(value), "its type cannot hold that");
+    if (!std::in_range<Number>(value)) fail(what + " is " + std::to_string(value), "its type cannot hold it");
     return static_cast<Number>(value);
   }
 }

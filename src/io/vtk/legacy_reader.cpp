@@ -54,13 +54,13 @@ class LegacyReader {
         std::from_chars(dot + 1, end, minor).ec != std::errc{}) {
       major = 3;
       minor = 0;
-      in_.notes.push_back("the first line gives no version; the file is read as one of version 3.0");
+      in_.notes.push_back("the first line gives no version; the file is read as version 3.0");
     }
     version_ = major > 9 || minor > 9 || minor < 0 ? kLastVersion + 1 : 10 * major + minor;
     if (version_ > kLastVersion || version_ < 10) {
       throw InputError(Location{in_.scanner.file(), 1, -1},
                        "the version " + std::to_string(major) + "." + std::to_string(minor) + " is unknown",
-                       "versions 1.0 to 5.1 are read");
+                       "versions 1.0 to 5.1 are supported");
     }
     layout_.version = std::to_string(major) + "." + std::to_string(minor);
     layout_.title = in_.scanner.raw_line();

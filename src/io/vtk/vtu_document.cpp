@@ -268,7 +268,7 @@ void VtuDocument::read_root() {
     const auto dot = std::from_chars(version->data(), end, major).ptr;
     if (dot != end && *dot == '.') std::from_chars(dot + 1, end, minor);
     if (major < 0 || major > 9 || minor < 0 || minor > 9)
-      throw error(root_, "the version is '" + version->substr(0, 40) + "'", "0.1 to 2.3 are understood");
+      throw error(root_, "the version is '" + version->substr(0, 40) + "'", "0.1 to 2.3 are supported");
     version_ = 10 * major + minor;
   }
   encoding_.compressor = VtuEncoding::Compressor::none;
@@ -287,7 +287,7 @@ void VtuDocument::read_root() {
     const auto found = std::find(kCompressors.begin(), kCompressors.end(), *compressor);
     if (found == kCompressors.end())
       throw error(root_, "the compressor is '" + compressor->substr(0, 40) + "'",
-                  "zlib, LZ4 and LZMA are understood");
+                  "zlib, LZ4 and LZMA are supported");
     encoding_.compressor = static_cast<VtuEncoding::Compressor>(found - kCompressors.begin());
   }
 }

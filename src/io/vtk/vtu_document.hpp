@@ -94,7 +94,7 @@ class VtuDocument {
   /// Returns how many numbers a row of an array has.
   [[nodiscard]] std::int64_t components(const VtuElement& array) const;
 
-  /// Throws Error if allocating `bytes` for an array would exceed the limit on memory.
+  /// Throws Error if allocating `bytes` for an array would exceed the memory limit.
   void claim(const VtuElement& array, std::uint64_t bytes) const;
   /// Returns the `count` values of an array in its number type. Throws Error if there are more or fewer;
   /// allocates no more than the size of the file allows.

@@ -94,7 +94,7 @@ class VtuWriter {
   void note_legacy_parts() {
     if (from_.metadata.legacy) {
       for (const auto& table : from_.metadata.legacy->lookup_tables)
-        from_.notes.push_back("not written (VTU has no place for it): the lookup table '" + table.name + "'");
+        from_.notes.push_back("not written (VTU cannot hold it): the lookup table '" + table.name + "'");
     }
     for (const auto& [array, fact] : from_.metadata.facts) {
       if (!fact.information.empty())

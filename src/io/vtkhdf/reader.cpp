@@ -142,7 +142,7 @@ class VtkHdfReader {
     }
     if (*type != kType) {
       throw InputError(file_.name(), fmt::format("holds VTK's {}", type->substr(0, 40)),
-                       "save it as one UnstructuredGrid, in ParaView by Append Datasets and Save Data");
+                       "save it as one UnstructuredGrid, in ParaView with Append Datasets and Save Data");
     }
     const std::optional<std::int64_t> steps = file_.integer_attribute(path_of("Steps"), "NSteps");
     if (steps && *steps > 1) {
@@ -344,7 +344,7 @@ class VtkHdfReader {
       array.values = file_.read_texts(path);
     } else {
       notes_.push_back(
-          fmt::format("'{}' is not read: only datasets of numbers and of texts are understood", path));
+          fmt::format("'{}' is not read: only datasets of numbers and of texts are supported", path));
       return {};
     }
     return array;

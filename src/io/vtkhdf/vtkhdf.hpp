@@ -67,7 +67,7 @@ void write_without_values(const std::filesystem::path& path, const std::string& 
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
-/// Notes the parts of a mesh of another format that VTKHDF has no place for: names of components,
+/// Notes the parts of a mesh of another format that VTKHDF cannot hold: names of components,
 /// information, lookup tables, and texts on vertices and cells, at which VTK's reader fails.
 void note_lacking(const vtk::WriteContext& from, Notes& notes);
 

@@ -142,7 +142,7 @@ void note_lacking(const vtk::WriteContext& from, Notes& notes) {
     }
   }
   for (const std::string& what : from.metadata.contents()) {
-    if (!what.starts_with("the field ")) notes.push_back("not written (VTKHDF has no place for it): " + what);
+    if (!what.starts_with("the field ")) notes.push_back("not written (VTKHDF cannot hold it): " + what);
   }
 }
 

@@ -100,7 +100,7 @@ std::size_t alternative_of(const Document& document, pugi::xml_node item) {
   });
   if (found == kNumberTypes.end()) {
     throw document.error(item, fmt::format("the numbers are '{}' of {} bytes", type, precision),
-                         "Float, Int, UInt, Char and UChar are understood");
+                         "Float, Int, UInt, Char and UChar are supported");
   }
   return found->alternative;
 }
@@ -134,7 +134,7 @@ void check_sum(const Document& document, const DataPlace& place, pugi::xml_node 
                   kValueMark)));
 }
 
-/// Throws InputError if allocating `bytes` for values would exceed the limit on memory.
+/// Throws InputError if allocating `bytes` for values would exceed the memory limit.
 void claim(const Document& document, pugi::xml_node item, std::uint64_t bytes) {
   const std::string fault = refused_claim(bytes, "the DataItem");
   if (!fault.empty()) throw document.error(item, fault, kClaimRemedy);
@@ -190,7 +190,7 @@ DataPlace DataReader::place_of(pugi::xml_node item) {
   const bool is_binary = same_but_for_case(format, "Binary");
   if (!is_binary && !format.empty() && !same_but_for_case(format, "XML")) {
     throw document_.error(item, fmt::format("the Format is '{}'", format.substr(0, 40)),
-                          "HDF, XML and Binary are understood");
+                          "HDF, XML and Binary are supported");
   }
   place.alternative = alternative_of(document_, item);
   if (is_binary) {

@@ -169,7 +169,7 @@ const std::vector<pugi::xml_node>& Document::selected(pugi::xml_node from, std::
   if (!found.empty()) return found;
   if (!is_linear(path)) {
     throw error(from, fmt::format("the XPath '{}' is too complex", path.substr(0, 100)),
-                "/Xdmf/Domain/Grid[1]/Topology is one that is understood");
+                "write it like /Xdmf/Domain/Grid[1]/Topology");
   }
   if (selected_.size() * numbers_.size() > kMostVisits) {
     throw error(from, fmt::format("the file has {} different references", selected_.size()),
@@ -183,11 +183,11 @@ const std::vector<pugi::xml_node>& Document::selected(pugi::xml_node from, std::
     }
   } catch (const pugi::xpath_exception& fault) {
     throw error(from, fmt::format("'{}' is not an XPath ({})", path.substr(0, 100), fault.what()),
-                "/Xdmf/Domain/Grid[1]/Topology is one");
+                "write it like /Xdmf/Domain/Grid[1]/Topology");
   }
   if (found.empty()) {
     throw error(from, fmt::format("'{}' names no element of the file", path.substr(0, 100)),
-                "references to elements of the same file are understood");
+                "only references to elements of the same file are supported");
   }
   return found;
 }

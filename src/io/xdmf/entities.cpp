@@ -74,7 +74,7 @@ class Expansion {
   }
 
   [[noreturn]] void fail_malformed(std::size_t at) const {
-    fail(at, "the DOCTYPE is malformed", "take it out, as only declarations of entities in it are read");
+    fail(at, "the DOCTYPE is malformed", "remove it: only declarations of entities are read");
   }
 
   /// Returns where the declarations in the DOCTYPE begin, after the [; npos if there are none.

@@ -101,11 +101,11 @@ void collect(const Document& document, pugi::xml_node grid, int depth, int& seri
   }
   if (!collection && !same_but_for_case(type, "Tree")) {
     throw document.error(grid, fmt::format("the GridType is '{}'", shortened(type)),
-                         "uniform Grids and collections of time steps are understood");
+                         "uniform Grids and collections of time steps are supported");
   }
   if (inner.size() != 1) {
     throw document.error(grid, "a spatial collection holds several meshes, one for each part or process",
-                         "merge them into one Grid before (in ParaView: Merge Blocks, then save)");
+                         "merge them into one Grid first (in ParaView: Merge Blocks, then save)");
   }
   collect(document, inner.front(), depth - 1, series, grids);
 }
@@ -299,7 +299,7 @@ class XdmfReader {
     const bool separate = same_but_for_case(type, "X_Y_Z") || same_but_for_case(type, "X_Y");
     if (!separate && !same_but_for_case(type, "XYZ") && !same_but_for_case(type, "XY")) {
       throw reading_.document.error(geometry, fmt::format("the GeometryType is '{}'", shortened(type)),
-                                    "XYZ, XY, X_Y_Z and X_Y are understood; other Grids are structured");
+                                    "XYZ, XY, X_Y_Z and X_Y are supported; other Grids are structured");
     }
     dimension = same_but_for_case(type, "XY") || same_but_for_case(type, "X_Y") ? 2 : 3;
     const std::vector<pugi::xml_node> items = items_of(geometry);
@@ -363,7 +363,7 @@ class XdmfReader {
       if (grid.series < 0 || points.size() != reading_.mesh.points.size()) {
         throw reading_.document.error(
             geometry, "the Grid has other points than the first",
-            "several meshes in one file are not understood: save each as a separate file");
+            "several meshes in one file are not supported: save each as a separate file");
       }
       return arrays_.add_moved_points(grid, fields, std::move(points), dimension);
     }

@@ -70,7 +70,7 @@ pugi::xml_node item_of_topology(const Reading& reading, pugi::xml_node topology)
         topology,
         fmt::format("the TopologyType is '{}'{}", shortened(type),
                     structured ? ", which is structured: its order is fixed by the grid" : ""),
-        "types with fixed nodes are understood, from Polyvertex to Hexahedron_1331, and Mixed");
+        "types with fixed nodes are supported, from Polyvertex to Hexahedron_1331, and Mixed");
   }
   return reading.item_of(topology);
 }
@@ -168,10 +168,10 @@ FileCells cells_of(Reading& reading, pugi::xml_node topology, pugi::xml_node ite
   const std::int64_t entries = std::ssize(numbers);
   const std::int64_t cells = entries / nodes;
   if (entries % nodes != 0 || (claimed >= 0 && claimed != cells) || cells > kMaxIndex) {
-    throw reading.document.error(item, fmt::format("the Topology has {} entries", entries),
-                                 claimed >= 0
-                                     ? fmt::format("{} cells of {} points are announced", claimed, nodes)
-                                     : fmt::format("{} for each cell are needed", nodes));
+    throw reading.document.error(
+        item, fmt::format("the Topology has {} entries", entries),
+        claimed >= 0 ? fmt::format("NumberOfElements announces {} cells of {} points", claimed, nodes)
+                     : fmt::format("{} for each cell are needed", nodes));
   }
   piece.types.assign(static_cast<std::size_t>(cells), static_cast<std::uint8_t>(vtk_type(known, nodes)));
   resize_large(piece.offsets, static_cast<std::size_t>(cells) + 1);
