@@ -49,7 +49,7 @@ def is_of_a_library(report):
 
 
 def findings(family, build):
-    """Returns the inputs on which our own code breaks a promise, and those on which a library does."""
+    """Returns the inputs on which our own code breaks a promise, and those on which a library breaks one."""
     own, of_libraries = [], []
     program = build / "bin" / f"meshorder_fuzz_{family}"
     for path in sorted((build / "findings" / family).glob("*-*")):

@@ -81,7 +81,7 @@ std::vector<Column> columns_of(const ComparisonReport& comparison, const KernelT
   return columns;
 }
 
-/// Returns a column for each layout: how many times fewer sectors additions touch on a graphics processor.
+/// Returns a column for each layout: the factor by which additions on a GPU touch fewer sectors.
 std::vector<Column> counted_columns(const ComparisonReport& comparison) {
   std::vector<Column> columns;
   for (std::size_t k = 0; k < comparison.gpu_layouts.size(); ++k) {

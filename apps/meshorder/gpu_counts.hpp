@@ -28,7 +28,7 @@ bool counts_additions(const Mesh& mesh);
 /// `counts_additions` returns false.
 std::optional<GpuCost> cost_of_additions(const Mesh& mesh, GpuLayout layout);
 
-/// Returns how many times fewer sectors a kernel touches in another order.
+/// Returns the factor by which a kernel touches fewer sectors in another order.
 double sector_ratio(const GpuCost& as_is, const GpuCost& ordered);
 
 /// A graphics processor with known times of the element forces of tetrahedra, in single precision and in the

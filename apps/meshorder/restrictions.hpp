@@ -15,7 +15,7 @@ struct Reach {
 
 /// Gives up for good, for this process and the threads that it starts, the rights:
 /// - to open files other than those in `reach` (Landlock, from Linux 5.13 on);
-/// - to use the network (this and the following by seccomp);
+/// - to use the network (seccomp denies this and the following);
 /// - to start programs and processes;
 /// - to reach other processes;
 /// - to change modes and owners of files by their paths;

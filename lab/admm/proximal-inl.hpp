@@ -175,7 +175,7 @@ struct InvariantSteps {
     return Lanes::mul_add(a * a, a - b * p[0], b * b * Lanes::mul_add(a, p[1], Lanes::set(0.0) - b * p[2]));
   }
 
-  /// Returns whether the nine curvatures are well above 0, as far as their products and sums show:
+  /// Returns whether the nine curvatures are well above 0, judged by their products and sums:
   /// - for opposed rotations of two singular vectors, A − b zₖ;
   /// - for common rotations, curvatures with the signs of zᵢ + zⱼ;
   /// - for the stretches, curvatures whose product has the sign of the determinant.

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""A stand-in for the part of CuPy that `meshorder.compare_on_gpu` uses. It runs kernels on the CPU by emulator.hpp."""
+"""A stand-in for the part of CuPy that `meshorder.compare_on_gpu` uses. It runs kernels on the CPU with emulator.hpp."""
 
 import ctypes
 import hashlib

@@ -19,7 +19,7 @@ from vtkmodules.vtkIOExodus import vtkExodusIIReader  # noqa: E402
 from vtkmodules.vtkIOLegacy import vtkUnstructuredGridReader  # noqa: E402
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader  # noqa: E402
 
-# by meshio's name of a cell type, Gmsh's number of it
+# Gmsh's number of each cell type, by meshio's name
 TYPES = {
     "line": 1, "triangle": 2, "quad": 3, "tetra": 4, "hexahedron": 5, "wedge": 6, "pyramid": 7,
     "line3": 8, "triangle6": 9, "quad9": 10, "tetra10": 11, "hexahedron27": 12, "wedge18": 13,

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Comparisons on a GPU. A stand-in for CuPy runs the kernels on the CPU by emulator.hpp."""
+"""Comparisons on a GPU. A stand-in for CuPy runs the kernels on the CPU with emulator.hpp."""
 
 import json
 import shutil

@@ -41,7 +41,7 @@ void add_order(Shape shape, int p, std::set<int>& widths) {
   }
 }
 
-/// Returns other numbers of vertices in use, for example for cells with one more vertex inside.
+/// Returns other vertex counts that are in use, for example of cells with one more vertex inside.
 std::set<int> others(Shape shape) {
   switch (shape) {
     case Shape::vertex:

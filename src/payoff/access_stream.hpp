@@ -276,8 +276,8 @@ struct RunReuse : Reuse {
   Kernel kernel = Kernel::spmv;
   int dimension = 0;  ///< dimension of the simplices: 3 for tetrahedra
   /// Number of loops whose end a processor mispredicts: rows of a product, or searches of assembly in a row.
-  /// A loop counts if its length differs from the length that came after the same eight preceding lengths the
-  /// last time. 0 for other kernels.
+  /// A loop is mispredicted if its length differs from the one predicted: the length that followed the last
+  /// time after the same eight lengths. 0 for other kernels.
   Offset turns = 0;
 
   bool operator==(const RunReuse&) const = default;

@@ -369,7 +369,7 @@ FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, co
       row[j] = kLike / known[j];
       row.back() = -kLike;
     } else {
-      // a cost that is 0 in `like` stays near 0; the weight is its mean share of the times
+      // a cost that is 0 in `like` stays near 0; its weight is its mean share of the times
       for (std::size_t i = 0; i < shares.size(); ++i)
         row[j] += shares[i][j] / static_cast<double>(shares.size());
     }

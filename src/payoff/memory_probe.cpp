@@ -58,7 +58,7 @@ void fill_caches(std::span<const std::uint64_t> words, std::size_t most) {
 
 /// Cache levels that explain the measured latencies.
 struct Explanation {
-  std::vector<std::size_t> sizes;  ///< for each level, the place of the point of its size; ascending
+  std::vector<std::size_t> sizes;  ///< for each level, the index of the probe point with its size; ascending
   std::vector<double> costs;       ///< ns: a hit in the first level, then the extra cost of missing each
   double error = std::numeric_limits<double>::infinity();  ///< the sum of squares of relative errors
 };
@@ -186,7 +186,7 @@ FoundCaches find_caches(std::span<const ProbePoint> points, std::size_t most) {
 }
 
 double read_bandwidth(std::size_t buffer_bytes, int passes, int threads) {
-  // integers: the compiler may sum them by vector instructions, but not floating-point numbers
+  // integers: the compiler may sum them with vector instructions, but not floating-point numbers
   const AlignedVector<std::uint64_t> buffer(std::max<std::size_t>(1, buffer_bytes / sizeof(std::uint64_t)),
                                             1);
   const auto parts = static_cast<std::size_t>(std::max(1, threads));

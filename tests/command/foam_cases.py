@@ -180,7 +180,7 @@ def write_settings(case, region="", **entries):
 
 
 def block_mesh(case, cells, grading="1 1 1", region=""):
-    """Makes the mesh of a box by blockMesh, with the patches lid and walls."""
+    """Makes the mesh of a box with blockMesh, and the patches lid and walls."""
     path = case / "system" / region / "blockMeshDict"
     path.write_text(
         header("dictionary", "blockMeshDict") +

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Runs the command with one fault at a time, by the interposer, and checks its ending and its files."""
+"""Runs the command with one fault at a time from the interposer, and checks its status and its files."""
 import dataclasses
 import errno
 import hashlib

@@ -67,7 +67,7 @@ inline double winding_number(const Surface& surface, const Point& x) {
   return sum / (2 * std::numbers::pi);
 }
 
-/// The distance from x to a triangle, by the plane and the three edges.
+/// The distance from x to a triangle: to its plane if the foot is inside, else to the nearest edge.
 inline double distance_to_triangle(const Point& x, const Point& a, const Point& b, const Point& c) {
   double smallest = 1e300;
   for (const auto& [p, q] : {std::pair{a, b}, {b, c}, {c, a}}) {

@@ -11,7 +11,7 @@ namespace {
 
 // a force counts as on the rim of its disc if (length / radius)² is at least this
 constexpr double kOnRim = 1.0 - 1e-9;
-// share of the residual up to which a step solves for its face, the forces that it selects
+// a step solves for its face, the forces that it selects, up to this share of the residual
 constexpr double kFaceTolerance = 0.1;
 // steps allowed without a new minimum of the energy
 constexpr int kPatience = 10;

@@ -47,7 +47,7 @@ struct ComparedOrder {
   std::optional<SavingDifference> difference;
 };
 
-/// Returns the orders of the studies' scenarios that both have run, as the first study lists them.
+/// Returns the scenarios and orders that both studies have run, in the sequence of the first study.
 std::vector<ComparedOrder> compared_orders(const StudyResults& a, const StudyResults& b);
 
 /// Returns the tables of a comparison. Their ids:

@@ -18,7 +18,7 @@ enum class Certainty {
   costs    ///< the interval lies below 0
 };
 
-/// A cell of a table: its text, and the value that it shows, by which a column is sorted.
+/// A cell of a table: its text, and its value, by which a column is sorted.
 struct TableCell {
   std::string text;
   std::optional<double> value;

@@ -302,7 +302,7 @@ def _print(text: str) -> None:
 
 
 def _write(made: str, path: str, format: str, words: _Words, dimension: int, maps: _Maps | None) -> list[str]:
-    """Converts the file that the command made, by meshio, and returns notes."""
+    """Converts the file that the command made with meshio, and returns notes."""
     ordered = words.subcommand == "order"
     moved = _files.read(made)
 

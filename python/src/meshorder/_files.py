@@ -82,7 +82,7 @@ def read(
 
 
 def write(mesh: Any, path: str | os.PathLike[str]) -> list[str]:
-    """Writes a mesh to a file, by meshio if meshorder does not have the format.
+    """Writes a mesh to a file, with meshio if meshorder does not have the format.
 
     Args:
         mesh: a `Mesh`, or another mesh that `reorder` takes, which is converted to a `Mesh` first.

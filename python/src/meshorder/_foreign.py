@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Reads and writes files in formats that meshorder does not have, by meshio if it is installed.
+"""Reads and writes files in formats that meshorder does not have, with meshio if it is installed.
 
 Each written file is read again: notes name the data that are missing from it. If cells would be lost, no file is
 written.
@@ -57,7 +57,7 @@ def format_of_meshio(path: str, format: str = "") -> str | None:
 
 
 def read(path: str, format: str) -> Mesh:
-    """Reads a file by meshio and returns a mesh whose notes say so and name what was left out.
+    """Reads a file with meshio and returns a mesh whose notes say so and name what was left out.
 
     Raises:
         InputError: meshio cannot read the file, or it holds no cells or cells of a type that meshorder does not know.
@@ -75,7 +75,7 @@ def read(path: str, format: str) -> Mesh:
 
 
 def write(mesh: Mesh, path: str, format: str) -> list[str]:
-    """Writes a file by meshio and returns notes that say so and name what is missing from the file.
+    """Writes a file with meshio and returns notes that say so and name what is missing from the file.
 
     Raises:
         InputError, Unavailable: as `write_meshio`.
@@ -86,7 +86,7 @@ def write(mesh: Mesh, path: str, format: str) -> list[str]:
 
 
 def read_meshio(path: str, format: str) -> tuple[Any, list[str]]:
-    """Reads a file by meshio.
+    """Reads a file with meshio.
 
     Returns:
         The meshio.Mesh, and notes: that meshio read the file, and the messages of meshio.

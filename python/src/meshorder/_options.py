@@ -45,7 +45,7 @@ class Options(TypedDict, total=False):
             other methods ignore it. None (default): no limit.
         progress: a function that is called now and then as ``progress(stage, fraction)``, with the name of the stage
             and the share of the call that is done (0 … 1, or −1 if unknown). It ends the call with `Stopped` if it
-            returns False; an exception ends it and passes through. True shows a bar by tqdm, which must be installed.
+            returns False; an exception ends it and passes through. True shows a bar with tqdm, which must be installed.
     """
 
     workload: str
@@ -129,7 +129,7 @@ def _real(value: Any, name: str) -> float:
 
 @contextlib.contextmanager
 def _bar() -> Iterator[Callable[[str, float], None]]:
-    """Shows a bar by tqdm and yields a progress function that updates it."""
+    """Shows a bar with tqdm and yields a progress function that updates it."""
     try:
         from tqdm.auto import tqdm
     except ImportError:

@@ -264,7 +264,7 @@ def advise(
     Args:
         mesh: the path of a file; a mesh that `reorder` takes, with lines, surfaces or volumes; or a matrix or graph of
             SciPy, networkx or PyTorch: its product with a vector is the only kernel then, "spmv".
-        measure: True runs the kernels on this machine; False predicts their times by reuse distances and a cost model.
+        measure: True runs the kernels on this machine; False predicts their times from reuse distances and a cost model.
             None: they are run if that takes a few seconds, up to half a million tetrahedra or a matrix of a million
             entries; for larger ones, and for a named machine, their times are predicted.
         kernels: "plain": as in most programs, one simple loop; "tuned": as in the simulators of
@@ -334,7 +334,7 @@ def compare(
         measure: True runs the kernels on this machine.
         kernels: "plain" or "tuned", as for `advise`; nothing is predicted for the latter.
         budget: with ``measure``, seconds from the start of the call, as for `advise`.
-        predict: True predicts the times by reuse distances and a cost model.
+        predict: True predicts the times from reuse distances and a cost model.
         machine: the machine to predict for, as for `advise`.
         all_threads: whether all threads share each run, as for `advise`.
         **options: see `Options`; ``symmetric`` has no effect.

@@ -13,7 +13,7 @@
 
 namespace meshorder::distributed {
 
-/// An Exodus II file that all ranks read at once: each rank opens it by libnetcdf, which needs no MPI
+/// An Exodus II file that all ranks read at once: each rank opens it with libnetcdf, which needs no MPI
 /// support, and reads a range of the nodes, a range of the elements, and the values of every variable for
 /// these.
 class ExodusSlices {

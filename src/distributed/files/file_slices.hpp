@@ -15,7 +15,7 @@
 namespace meshorder::distributed {
 
 /// Returns the head of a file for all ranks; nothing if `read_head` returns nothing. Its blocks, XML, mold
-/// and `files` are at the root only. Every rank has to call it. Rank 0 finds the datasets of HDF5 files by
+/// and `files` are at the root only. Every rank has to call it. Rank 0 finds the datasets of HDF5 files with
 /// libhdf5; the other ranks do not need this library.
 ///
 /// @throws SharedError as `read_head`

@@ -138,7 +138,7 @@ void MeshParts::find_sharing_parts(const Communicator& communicator, const Share
   });
   const Rows told = send_rows(communicator, std::move(shared), std::move(dispatches));
   communicator.together([&] {
-    // vertices of all rows ascend
+    // the vertices of the rows ascend from row to row
     Incidence all;
     all.vertex_count = parts_of_vertices_.vertex_count;
     Offset row = 0;

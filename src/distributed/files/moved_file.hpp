@@ -20,7 +20,7 @@ namespace meshorder::distributed {
 
 /// A new file, which exists and is empty.
 struct SliceFile {
-  std::string path;  ///< temporary path, until it is complete
+  std::string path;  ///< path of the temporary file
   std::string name;  ///< final name, also in messages
   // path and name, as above, of the HDF5 file that belongs to an .xdmf file; else empty
   std::string data;

@@ -12,7 +12,7 @@
 
 namespace meshorder::distributed {
 
-/// A file that all ranks read or write at the same time by MPI-IO; each rank has its own range of bytes.
+/// A file that all ranks read or write at the same time with MPI-IO; each rank has its own range of bytes.
 /// Every rank has to call all functions.
 class SharedFile {
  public:
@@ -53,7 +53,7 @@ class SharedFile {
 
   [[nodiscard]] InputError cannot_be_opened(const std::string& reason) const;
 
-  /// Reads or writes the rank's own bytes by a function of MPI, chunk by chunk.
+  /// Reads or writes the rank's own bytes with a function of MPI, chunk by chunk.
   template <class Byte, class Call>
   void transfer(Offset at, std::span<Byte> bytes, const Call& call, const Words& words) const;
 

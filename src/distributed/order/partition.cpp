@@ -74,7 +74,7 @@ GlobalIndex cut_between(const Communicator& communicator, const GlobalGraph& gra
   return communicator.sum(entries) / 2;
 }
 
-/// Cuts the graph by PT-Scotch; tries both strategies on small graphs. Returns whether PT-Scotch succeeded.
+/// Cuts the graph with PT-Scotch; tries both strategies on small graphs. Returns whether PT-Scotch succeeded.
 bool cut_by_best_strategy(const Communicator& communicator, const GlobalGraph& graph, Index parts,
                           const std::vector<GlobalIndex>& weights, std::vector<Index>& part_of) {
   if (!cut_by_ptscotch(communicator, graph, parts, weights, ScotchStrategy::speed, part_of)) return false;

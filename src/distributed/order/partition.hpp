@@ -64,8 +64,8 @@ struct Partition {
   std::string reason;          ///< why the requested partitioner was not used; empty if it was
 };
 
-/// Cuts a graph into parts of about the same weight. `ptscotch` cuts graphs of up to 100,000 vertices by two
-/// of its strategies, and keeps the parts with fewer edges between them. If PT-Scotch fails or the
+/// Cuts a graph into parts of about the same weight. `ptscotch` cuts graphs of up to 100,000 vertices with
+/// two of its strategies, and keeps the parts with fewer edges between them. If PT-Scotch fails or the
 /// graph is too small for it, `hilbert` is used instead. Every rank has to call it.
 ///
 /// @param graph    numbered along a Hilbert curve from 0 on, equal shares on all ranks
@@ -79,7 +79,7 @@ struct Partition {
 /// Strategies of PT-Scotch. Which of them cuts fewer edges depends on the graph.
 enum class ScotchStrategy : std::uint8_t { speed, quality };
 
-/// Cuts a graph by PT-Scotch, with one thread per rank; deterministic. Every rank has to call it.
+/// Cuts a graph with PT-Scotch, on one thread per rank; deterministic. Every rank has to call it.
 ///
 /// @param graph     as in `partitioned`
 /// @param parts     ≥ 2

@@ -21,7 +21,7 @@
 #include <limits>
 #include <utility>
 
-// Reads and writes nodes by CGIO.
+// Reads and writes nodes with CGIO.
 
 namespace meshorder::cgns {
 namespace {

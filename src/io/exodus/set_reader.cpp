@@ -76,8 +76,8 @@ Members without_repeated(const Entries& own, bool are_sides) {
   return result;
 }
 
-/// Returns the table that marks which blocks or sets (rows) have values of which variables (columns), row by
-/// row. Empty if the file has no table.
+/// Returns the truth table of the file, row by row: whether a block or set (row) has values of a variable
+/// (column). Empty if the file has no table.
 std::vector<std::int64_t> read_table(Reading& reading, const std::string& of, std::size_t objects,
                                      std::size_t variables) {
   const Variable* const table = reading.take(of + "_var_tab");

@@ -97,7 +97,7 @@ bool lock_new(const fs::path& folder, Descriptor& lock) {
   return ::fstat(lock.get(), &status) != 0 || status.st_nlink > 0;
 }
 
-/// Removes the files that this program puts into a scratch folder, only by system functions that a signal
+/// Removes the files that this program puts into a scratch folder, with only system functions that a signal
 /// handler may call. The lock goes last: a folder without a lock looks like the folder of a process that has
 /// just begun.
 void remove_files_of(const Descriptor& folder) noexcept {

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Compares orders of a mesh by kernels that run on a graphics processor, and says which order is best there."""
+"""Compares orders of a mesh with kernels that run on a graphics processor, and says which order is best there."""
 
 from __future__ import annotations
 

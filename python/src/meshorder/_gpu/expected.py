@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Reference results of the kernels, by NumPy in double precision."""
+"""Reference results of the kernels, computed with NumPy in double precision."""
 
 from __future__ import annotations
 
