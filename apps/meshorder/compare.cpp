@@ -212,7 +212,10 @@ void add_compare(CLI::App& subcommand) {
                   "patches or gathered, separated by commas")
       ->delimiter(',')
       ->type_name("LAYOUT");
-  subcommand.add_option("--budget", arguments->budget_seconds, "Seconds to spend on running the kernels")
+  subcommand
+      .add_option("--budget", arguments->budget_seconds,
+                  "Seconds to spend on computing the orders and on running the kernels, which run at least\n"
+                  "twice in each order that is not slow")
       ->check(positive())
       ->capture_default_str();
   add_cache_option(subcommand, arguments->caches);

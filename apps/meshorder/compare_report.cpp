@@ -247,11 +247,10 @@ nlohmann::ordered_json kernels_json(const OrderTimes& times, const OrderTimes& b
   nlohmann::ordered_json kernels;
   for (const Kernel kernel : run) {
     const KernelTimes& t = times[kernel];
-    kernels[std::string(to_string(kernel))] = {{"milliseconds", t.median_ms},
-                                               {"best_milliseconds", t.best_ms},
-                                               {"samples", t.samples},
-                                               {"speedup", t.speedup},
-                                               {"of_band", of_band(t, band[kernel])}};
+    kernels[std::string(to_string(kernel))] = {
+        {"milliseconds", t.median_ms}, {"best_milliseconds", t.best_ms},
+        {"samples", t.samples},        {"share", t.share},
+        {"speedup", t.speedup},        {"of_band", of_band(t, band[kernel])}};
   }
   return kernels;
 }
@@ -280,6 +279,7 @@ void print_comparison(const Console& console, const ComparisonReport& comparison
     if (!taken.reason.empty()) console.print("auto takes {}: {}", taken.name, taken.reason);
   }
   for (const KernelTable& table : comparison.kernels) print_speedups(console, comparison, table, told);
+  if (const std::string parts = parts_in_words(comparison); !parts.empty()) console.print("{}", parts);
   if (!comparison.gpu_layouts.empty()) {
     console.print(
         "gpu: factor by which atomic additions touch fewer sectors of memory on a graphics processor");

@@ -57,6 +57,12 @@ void KernelBench::run(Kernel kernel) {
   assembled_ = assembled_ || kernel == Kernel::assembly;
 }
 
+double KernelBench::run_stretches(Kernel kernel) {
+  const double share = compute_stretches(kernel);
+  assembled_ = assembled_ || (kernel == Kernel::assembly && share > 0);
+  return share;
+}
+
 std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const KernelInput& input, int threads) {
   std::unique_ptr<KernelBench> bench;
   if (input.is_matrix()) {

@@ -62,6 +62,12 @@ class KernelBench : public Polymorphic {
   /// if there was none, it assembles first.
   void run(Kernel kernel);
 
+  /// Runs a part of a kernel from which the time of a whole run follows: it computes stretches of elements,
+  /// spread evenly over the mesh, and clears the same share of the results. Returns the share of the elements
+  /// that ran; 0, without a run, for kernels without elements and for meshes of which a part would not be
+  /// like the whole. The results are incomplete; a product with such a matrix takes the time of any other.
+  double run_stretches(Kernel kernel);
+
   /// Returns the result of the kernel's last run, row by row: for spmv a product for each vertex, for
   /// assembly the values of the matrix, for elements and springs a force for each vertex. Elements and
   /// springs share one array.
@@ -80,6 +86,7 @@ class KernelBench : public Polymorphic {
 
  private:
   virtual void compute(Kernel kernel) = 0;
+  virtual double compute_stretches(Kernel /*kernel*/) { return 0; }
 
   bool assembled_ = false;
 };

@@ -9,15 +9,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace meshorder {
 namespace {
 
-/// Seconds of each run, by kernel.
-using Samples = std::array<std::vector<double>, kKernels.size()>;
+/// The samples of a kernel in an order.
+struct KernelSamples {
+  std::vector<double> seconds;  ///< of a run
+  double share = 1;             ///< see KernelTimes
+};
 
-std::vector<double>& of(Samples& samples, Kernel kernel) { return samples[static_cast<std::size_t>(kernel)]; }
+/// The samples of an order, by kernel.
+using Samples = std::array<KernelSamples, kKernels.size()>;
+
+KernelSamples& of(Samples& samples, Kernel kernel) { return samples[static_cast<std::size_t>(kernel)]; }
 
 /// Seconds of some runs.
 struct RunTime {
@@ -29,48 +36,68 @@ struct RunTime {
   }
 };
 
-RunTime time_of_runs(KernelBench& bench, Kernel kernel, int repeats) {
+template <class Runs>
+RunTime time_of(const Runs& runs) {
   const ThreadStopwatch thread;
   const Stopwatch stopwatch;
-  for (int i = 0; i < repeats; ++i) bench.run(kernel);
+  runs();
   return {stopwatch.seconds(), thread.seconds()};
 }
 
 /// How samples of a kernel are taken.
 struct Plan {
-  int repeats = 1;     ///< 0: no samples are taken
-  int warm_ups = 0;    ///< number of runs before the sample, which are not timed
-  double seconds = 0;  ///< duration of the fastest run so far
+  int repeats = 1;   ///< 0: no samples are taken
+  int warm_ups = 0;  ///< number of runs before the sample, which are not timed
+  /// Duration of the fastest run so far.
+  double seconds = std::numeric_limits<double>::infinity();
+  double share = 1;                            ///< of the elements in the only run so far; see KernelTimes
+  std::optional<RunTime> of_first_round = {};  ///< sample of the first round, if it is taken already
+
+  [[nodiscard]] bool has_run() const { return !std::isinf(seconds); }
 };
 
-/// Takes a sample; returns the mean seconds of its runs.
-double sample(KernelBench& bench, Kernel kernel, const Plan& plan, const TimingOptions& options,
-              SteadinessWatch& watch) {
+/// Takes a sample; returns the time of all its runs.
+RunTime sample(KernelBench& bench, Kernel kernel, const Plan& plan) {
   for (int i = 0; i < plan.warm_ups; ++i) bench.run(kernel);
-  const RunTime time = time_of_runs(bench, kernel, plan.repeats);
-  watch.add_sample(time.elapsed, time.on_thread);
-  return time.by(options) / plan.repeats;
+  return time_of([&] {
+    for (int i = 0; i < plan.repeats; ++i) bench.run(kernel);
+  });
 }
 
-Plan plan_samples(KernelBench& bench, Kernel kernel, const TimingOptions& options) {
+/// Runs stretches of a kernel's elements, if it can; returns the duration of a whole run that follows.
+Plan plan_by_stretches(KernelBench& bench, Kernel kernel, const TimingOptions& options) {
+  Plan plan;
+  double share = 0;
+  const RunTime time = time_of([&] { share = bench.run_stretches(kernel); });
+  if (share > 0) plan = {.seconds = time.by(options) / share, .share = share};
+  return plan;
+}
+
+/// @param is_first  whether the kernel has not run yet
+Plan plan_samples(KernelBench& bench, Kernel kernel, bool is_first, const TimingOptions& options) {
   constexpr double kMostRepeats = 1e5;
   constexpr std::size_t kMostRuns = 12;
   // a kernel that runs longer than kLong · sample_seconds reads far more than the caches hold, so it needs no
   // warm-up; for a first run the limit is twice as long, because first runs take longer
   constexpr double kLong = 5.0;
   const double least = options.sample_seconds;
-  Plan plan{.seconds = std::numeric_limits<double>::infinity()};
+  Plan plan;
   std::vector<double> seconds;
   double best = std::numeric_limits<double>::infinity();
-  while (seconds.empty() || (seconds.size() < 2 && best < 2 * kLong * least) ||
+  RunTime time;
+  while (seconds.empty() || (is_first && seconds.size() < 2 && best < 2 * kLong * least) ||
          (best < kLong * least && seconds.size() < kMostRuns && !is_steady(seconds))) {
-    const RunTime time = time_of_runs(bench, kernel, 1);
+    time = time_of([&] { bench.run(kernel); });
     seconds.push_back(std::max(time.elapsed, 1e-9));
     best = std::min(best, seconds.back());
     plan.seconds = std::min(plan.seconds, time.by(options));
   }
-  plan.repeats = static_cast<int>(std::clamp(std::ceil(least / best), 1.0, kMostRepeats));
-  plan.warm_ups = best < kLong * least ? runs_to_settle(seconds) : 0;
+  if (best < kLong * least) {
+    plan.repeats = static_cast<int>(std::clamp(std::ceil(least / best), 1.0, kMostRepeats));
+    plan.warm_ups = runs_to_settle(seconds);
+  } else {
+    plan.of_first_round = time;
+  }
   return plan;
 }
 
@@ -79,17 +106,20 @@ using Plans = std::vector<std::array<Plan, kKernels.size()>>;
 
 /// Ends the timing of plainly slow orders: the run that made the plan becomes their only sample. Runs in such
 /// an order are long and take several times as long as in the fastest order. They would take most of the
-/// time, and the order cannot be the best.
+/// time, and the order cannot be the best. Does nothing for kernels that have not run.
 void end_plainly_slow(Plans& plans, std::vector<Samples>& samples, std::size_t kernels) {
   constexpr double kSlow = 3.0;
-  constexpr double kLongRun = 0.1;  // seconds; a shorter run may have been disturbed
+  // seconds; shorter runs may have been disturbed
+  constexpr double kLongRun = 0.1;
+  constexpr double kLongStretches = 0.05;
   for (std::size_t k = 0; k < kernels; ++k) {
     double fastest = std::numeric_limits<double>::infinity();
     for (const auto& of_order : plans) fastest = std::min(fastest, of_order[k].seconds);
     for (std::size_t i = 0; i < plans.size(); ++i) {
       Plan& plan = plans[i][k];
-      if (plan.seconds < kLongRun || plan.seconds < kSlow * fastest) continue;
-      samples[i][k].push_back(plan.seconds);
+      const double least = plan.share < 1 ? kLongStretches / plan.share : kLongRun;
+      if (plan.repeats == 0 || !plan.has_run() || plan.seconds < std::max(least, kSlow * fastest)) continue;
+      samples[i][k] = {{plan.seconds}, plan.share};
       plan.repeats = 0;
     }
   }
@@ -101,16 +131,26 @@ std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, c
   const std::span<const Kernel> kernels =
       benches.empty() ? std::span<const Kernel>() : benches.front()->kernels();
   Plans plans(orders);
-  const Stopwatch stopwatch;
-  for (std::size_t i = 0; i < orders; ++i) {
-    // the last kernels first: the first assembly computes the matrix of the product
-    for (std::size_t k = kernels.size(); k-- > 0;) {
-      poll();
-      plans[i][k] = plan_samples(*benches[i], kernels[k], options);
-    }
-  }
   std::vector<Samples> samples(orders);
-  if (orders > 0) end_plainly_slow(plans, samples, kernels.size());
+  const Stopwatch stopwatch;
+  // the last kernels first: the first assembly computes the matrix of the product
+  const auto plan_each = [&](const auto& plan) {
+    for (std::size_t i = 0; i < orders; ++i) {
+      for (std::size_t k = kernels.size(); k-- > 0;) {
+        poll();
+        if (plans[i][k].repeats > 0) plans[i][k] = plan(*benches[i], kernels[k], plans[i][k]);
+      }
+    }
+    end_plainly_slow(plans, samples, kernels.size());
+  };
+  if (options.in_stretches) {
+    plan_each([&](KernelBench& bench, Kernel kernel, const Plan& /*before*/) {
+      return plan_by_stretches(bench, kernel, options);
+    });
+  }
+  plan_each([&](KernelBench& bench, Kernel kernel, const Plan& before) {
+    return plan_samples(bench, kernel, !before.has_run(), options);
+  });
   const double planned = stopwatch.seconds();
   for (int round = 0; round < options.max_rounds; ++round) {
     const double seconds = stopwatch.seconds();
@@ -120,37 +160,41 @@ std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, c
       for (std::size_t i = 0; i < orders; ++i) {
         const std::size_t order = (i + static_cast<std::size_t>(round)) % orders;
         poll();
-        if (plans[order][k].repeats == 0) continue;
-        samples[order][k].push_back(sample(*benches[order], kernels[k], plans[order][k], options, watch));
+        const Plan& plan = plans[order][k];
+        if (plan.repeats == 0) continue;
+        const RunTime time = round == 0 && plan.of_first_round ? *plan.of_first_round
+                                                               : sample(*benches[order], kernels[k], plan);
+        watch.add_sample(time.elapsed, time.on_thread);
+        samples[order][k].seconds.push_back(time.by(options) / plan.repeats);
       }
     }
   }
   for (const Samples& of_order : samples) {
     for (const Kernel kernel : kernels) {
-      const std::vector<double>& taken = of_order[static_cast<std::size_t>(kernel)];
+      const std::vector<double>& taken = of_order[static_cast<std::size_t>(kernel)].seconds;
       if (taken.size() > 1) watch.add_repeat(repeat_difference(taken));
     }
   }
   return samples;
 }
 
-KernelTimes summary(std::vector<double> samples, double reference_seconds) {
+KernelTimes summary(KernelSamples samples, double reference_seconds) {
   KernelTimes times;
-  times.samples = static_cast<int>(samples.size());
-  if (samples.empty()) return times;
-  const double best = *std::min_element(samples.begin(), samples.end());
+  times.samples = static_cast<int>(samples.seconds.size());
+  if (samples.seconds.empty()) return times;
+  const double best = *std::ranges::min_element(samples.seconds);
   times.best_ms = 1e3 * best;
   times.speedup = best > 0.0 ? reference_seconds / best : 1.0;
-  times.median_ms = 1e3 * median(std::move(samples));
+  times.median_ms = 1e3 * median(std::move(samples.seconds));
+  times.share = samples.share;
   return times;
 }
 
 std::vector<OrderTimes> summaries(std::vector<Samples> samples) {
   std::vector<OrderTimes> result(samples.size());
   for (const Kernel kernel : kKernels) {
-    if (samples.empty() || of(samples.front(), kernel).empty()) continue;
-    const double reference =
-        *std::min_element(of(samples.front(), kernel).begin(), of(samples.front(), kernel).end());
+    if (samples.empty() || of(samples.front(), kernel).seconds.empty()) continue;
+    const double reference = *std::ranges::min_element(of(samples.front(), kernel).seconds);
     for (std::size_t i = 0; i < samples.size(); ++i)
       result[i][kernel] = summary(of(samples[i], kernel), reference);
   }
@@ -186,8 +230,10 @@ Timings time_orders(Index orders, const PrepareOrder& prepare, const TimingOptio
     std::vector<Samples> samples =
         sample_interleaved(benches, options, options.budget_seconds / groups, watch);
     for (const Kernel kernel : kKernels) {
-      std::vector<double>& all = of(of_reference, kernel);
-      all.insert(all.end(), of(samples.front(), kernel).begin(), of(samples.front(), kernel).end());
+      KernelSamples& all = of(of_reference, kernel);
+      const KernelSamples& more = of(samples.front(), kernel);
+      all.seconds.insert(all.seconds.end(), more.seconds.begin(), more.seconds.end());
+      all.share = std::min(all.share, more.share);
     }
     const std::vector<OrderTimes> times = summaries(std::move(samples));
     result.insert(result.end(), times.begin() + 1, times.end());

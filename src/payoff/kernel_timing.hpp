@@ -17,6 +17,9 @@ struct TimingOptions {
   /// counted; preparing the orders is not.
   double budget_seconds = 12.0;
   int min_rounds = 3;  ///< these rounds run even if they exceed the budget
+  /// Time a kernel by stretches of the elements in orders in which it is plainly slow, see
+  /// `KernelTimes::share`.
+  bool in_stretches = false;
   int max_rounds = 25;
   /// Least length of a sample. A kernel that takes less is repeated, as in a solver, and finds the data of
   /// its last run in the caches.
@@ -34,6 +37,7 @@ struct KernelTimes {
   double median_ms = 0.0;
   double speedup = 1.0;  ///< best_ms of the reference in the same rounds, divided by this best_ms
   int samples = 0;
+  double share = 1;  ///< share of the elements that ran; if below 1, the times are the measured ones / share
 };
 
 /// Times of all kernels in an order.
@@ -59,9 +63,11 @@ using PrepareOrder = std::function<std::unique_ptr<KernelBench>(Index)>;
 /// that changes of the machine's speed affect all orders alike. A round takes a sample of every kernel in
 /// every order, kernel by kernel; the next round begins with the next order. The first runs of a sample find
 /// another order's data in the caches and are not counted; their number is `runs_to_settle`, but 0 if a run
-/// takes longer than five times `sample_seconds`. If a kernel takes 0.1 s or more in an order, and three
-/// times as long as in the fastest order, its first run is its only sample there. The first bench is the
-/// reference of the speedups.
+/// takes longer than five times `sample_seconds`, and the run that showed this is then the sample of the
+/// first round. If a kernel takes 0.1 s or more in an order, and three times as long as in the fastest order,
+/// its first run is its only sample there. With `in_stretches` this run is one by
+/// `KernelBench::run_stretches`, if that takes 0.05 s or more. The first bench is the reference of the
+/// speedups.
 Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options = {});
 
 /// The same for orders that are prepared when needed: `prepare(i)` returns the bench of order i; order 0 is

@@ -2,14 +2,18 @@
 #include "payoff/mesh_comparison.hpp"
 
 #include "base/stopwatch.hpp"
+#include "base/text.hpp"
 #include "io/format.hpp"
 #include "mesh/graphs.hpp"
 #include "payoff/advice.hpp"
 #include "payoff/band.hpp"
 #include "payoff/product_bench.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 namespace meshorder {
@@ -24,6 +28,10 @@ void begin_stage(const MeshComparisonOptions& options, const std::string& stage,
 }
 
 MeshMethods taken(const MeshOrder& order) { return {order.vertices.method.name, order.cells.method.name}; }
+
+bool is_own(const MeshOrder& order) {
+  return order.vertices.permutation.is_identity() && order.cells.permutation.is_identity();
+}
 
 /// Returns the methods without repeats, the mesh's own order first.
 std::vector<MeshMethods> each_once(const std::vector<MeshMethods>& methods) {
@@ -77,7 +85,9 @@ KernelTable timed(const MeshComparison& comparison, const KernelInput& input, co
   const Index orders = index_size(comparison.orders);
   const auto prepare = [&](Index i) -> std::unique_ptr<KernelBench> {
     if (i < orders) {
-      auto bench = prepare_kernels(comparison.kernel_set, input.moved(comparison.orders[i].order), threads);
+      const MeshOrder& order = comparison.orders[i].order;
+      auto bench = is_own(order) ? prepare_kernels(comparison.kernel_set, input, threads)
+                                 : prepare_kernels(comparison.kernel_set, input.moved(order), threads);
       table.redundancy.push_back(bench->redundancy());
       return bench;
     }
@@ -103,6 +113,7 @@ MeshComparison compare_orders(const Mesh& mesh, const MeshComparisonOptions& opt
                         .band_span = {},
                         .kernels = {},
                         .kernels_run = kernels_of(mesh)};
+  const Stopwatch since_call;
   const Stopwatch building_graph;
   const CsrGraph graph = vertex_graph(mesh);
   const double graph_seconds = building_graph.seconds();
@@ -113,13 +124,38 @@ MeshComparison compare_orders(const Mesh& mesh, const MeshComparisonOptions& opt
   result.band_span = edge_span(band.graph, Permutation::identity(band.graph.size()));
   std::vector<int> thread_counts{1};
   if (options.threads > 1) thread_counts.push_back(options.threads);
-  TimingOptions timing;
-  timing.budget_seconds = options.budget_seconds / static_cast<double>(thread_counts.size());
+  const double left = std::max(0.0, options.budget_seconds - since_call.seconds());
+  TimingOptions timing{.budget_seconds = left / static_cast<double>(thread_counts.size()),
+                       .min_rounds = 2,
+                       .in_stretches = true};
   for (const int threads : thread_counts) {
     timing.processor_time = threads == 1;
     result.kernels.push_back(timed(result, input, band, threads, timing));
   }
   return result;
+}
+
+std::string parts_in_words(const MeshComparison& comparison) {
+  double share = 1;
+  std::vector<std::string> of_kernels;
+  for (const Kernel kernel : comparison.kernels_run) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < comparison.orders.size(); ++i) {
+      double least = 1;
+      for (const KernelTable& table : comparison.kernels)
+        least = std::min(least, table.orders[i][kernel].share);
+      share = std::min(share, least);
+      const MeshOrder& order = comparison.orders[i].order;
+      if (least < 1)
+        names.push_back(order_in_words({.vertices = order.vertices.method, .elements = order.cells.method}));
+    }
+    if (!names.empty())
+      of_kernels.push_back(
+          fmt::format("{} in {}", kKernelTitles[static_cast<std::size_t>(kernel)], join(names)));
+  }
+  if (of_kernels.empty()) return {};
+  return fmt::format("slow, so computed from the time of 1/{:.0f} of the elements: {}", 1 / share,
+                     join(of_kernels, std::string_view("; ")));
 }
 
 Advice advice_of(const MeshComparison& comparison) {

@@ -23,7 +23,8 @@ struct MeshComparisonOptions {
   OrderOptions ordering = {};
   KernelSet kernels = KernelSet::plain;
   int threads = 1;  ///< the kernels run on one thread and, if there are more, on all of them
-  double budget_seconds = TimingOptions{}.budget_seconds;  ///< for all runs of kernels
+  /// Seconds for the orders and the runs of kernels together; at least two rounds of runs exceed them.
+  double budget_seconds = TimingOptions{}.budget_seconds;
   bool reuse = false;           ///< compute `reuse` if the mesh has at most two million simplices
   bool reuse_of_large = false;  ///< compute `reuse` also for larger meshes
   bool iterations = false;      ///< compute `iterations` in each case in which `reuse` is computed
@@ -68,6 +69,10 @@ struct MeshComparison {
 ///
 /// @throws as `compute_order_in_file` and `prepare_kernels`
 MeshComparison compare_orders(const Mesh& mesh, const MeshComparisonOptions& options);
+
+/// Returns a sentence that lists the times for which only a part of the elements ran (`KernelTimes::share`);
+/// empty if there are none.
+std::string parts_in_words(const MeshComparison& comparison);
 
 /// Returns advice on the mesh from the times on the largest number of threads; the other orders are the
 /// candidates.

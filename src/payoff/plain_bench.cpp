@@ -13,6 +13,21 @@
 namespace meshorder {
 namespace {
 
+/// Of a kernel that runs in stretches, one of `kEvery` elements runs.
+constexpr std::size_t kEvery = 8;
+
+/// Calls `run(elements)` for all elements; if `in_stretches`, for 16 stretches that start at equal distances.
+/// A stretch is long, so what it finds in the caches at its start does not matter.
+template <class Run>
+void for_stretches(std::span<const Index> elements, std::size_t corners, bool in_stretches, Run run) {
+  constexpr std::size_t kStretches = 16;
+  if (!in_stretches) return run(elements);
+  const std::size_t count = elements.size() / corners;
+  for (std::size_t i = 0; i < kStretches; ++i) {
+    run(elements.subspan(corners * (i * count / kStretches), corners * (count / (kStretches * kEvery))));
+  }
+}
+
 /// Calls `keep(first)` for each group of `size` vertices that has an owned vertex; `first` is the place of
 /// the group's first vertex.
 template <class Keep>
@@ -101,18 +116,22 @@ void PlainBench::share(int threads) {
 }
 
 template <class Owned>
-void PlainBench::run_part(Kernel kernel, const Owned& owned, const Share& share) {
+void PlainBench::run_part(Kernel kernel, const Owned& owned, const Share& share, bool in_stretches) {
   const auto begin = static_cast<std::size_t>(share.owned.begin);
   const auto count = static_cast<std::size_t>(share.owned.end) - begin;
   const plain::Matrix<double, Index, Offset> matrix{starts_, columns_, values_};
-  const auto clear = [](std::vector<double>& values, Offset first, Offset last) {
-    std::fill(values.begin() + first, values.begin() + last, 0.0);
+  const auto clear = [&](std::vector<double>& values, Offset first, Offset last) {
+    const Offset size = in_stretches ? (last - first) / static_cast<Offset>(kEvery) : last - first;
+    std::fill_n(values.begin() + first, size, 0.0);
   };
-  // calls `call` with the number of corners of a simplex as a compile-time constant
+  // calls `call` with the number of corners of a simplex as a compile-time constant, and with elements
   const auto by_corners = [&](auto call) {
-    if (corners_ == 4) call(std::integral_constant<int, 4>{});
-    if (corners_ == 3) call(std::integral_constant<int, 3>{});
-    if (corners_ == 2) call(std::integral_constant<int, 2>{});
+    for_stretches(share.simplices, static_cast<std::size_t>(corners_), in_stretches,
+                  [&](std::span<const Index> elements) {
+                    if (corners_ == 4) call(std::integral_constant<int, 4>{}, elements);
+                    if (corners_ == 3) call(std::integral_constant<int, 3>{}, elements);
+                    if (corners_ == 2) call(std::integral_constant<int, 2>{}, elements);
+                  });
   };
   switch (kernel) {
     case Kernel::spmv:
@@ -121,11 +140,15 @@ void PlainBench::run_part(Kernel kernel, const Owned& owned, const Share& share)
       return;
     case Kernel::element:
       clear(forces_, Offset{3} * share.owned.begin, Offset{3} * share.owned.end);
-      by_corners([&](auto corners) { plain::press<corners>(share.simplices, positions_, forces_, owned); });
+      by_corners([&](auto corners, std::span<const Index> elements) {
+        plain::press<corners>(elements, positions_, forces_, owned);
+      });
       return;
     case Kernel::assembly:
       clear(values_, starts_[begin], starts_[begin + count]);
-      by_corners([&](auto corners) { plain::assemble<corners>(share.simplices, positions_, matrix, owned); });
+      by_corners([&](auto corners, std::span<const Index> elements) {
+        plain::assemble<corners>(elements, positions_, matrix, owned);
+      });
       return;
     case Kernel::springs:
       clear(forces_, Offset{3} * share.owned.begin, Offset{3} * share.owned.end);
@@ -135,10 +158,20 @@ void PlainBench::run_part(Kernel kernel, const Owned& owned, const Share& share)
   }
 }
 
-void PlainBench::compute(Kernel kernel) {
-  if (shares_.empty()) return run_part(kernel, plain::AllVertices{}, all_);
+void PlainBench::run_parts(Kernel kernel, bool in_stretches) {
+  if (shares_.empty()) return run_part(kernel, plain::AllVertices{}, all_, in_stretches);
   for_each_part(index_size(shares_),
-                [&](Index part) { run_part(kernel, shares_[part].owned, shares_[part]); });
+                [&](Index part) { run_part(kernel, shares_[part].owned, shares_[part], in_stretches); });
+}
+
+void PlainBench::compute(Kernel kernel) { run_parts(kernel, false); }
+
+double PlainBench::compute_stretches(Kernel kernel) {
+  constexpr std::size_t kFewest = 1'000'000;  // elements whose data are far more than the caches hold
+  const bool has_elements = kernel == Kernel::element || kernel == Kernel::assembly;
+  if (!has_elements || all_.simplices.size() < kFewest * static_cast<std::size_t>(corners_)) return 0;
+  run_parts(kernel, true);
+  return 1.0 / kEvery;
 }
 
 std::span<const double> PlainBench::result(Kernel kernel) const {

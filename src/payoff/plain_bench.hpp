@@ -23,6 +23,7 @@ class PlainBench final : public KernelBench {
 
  private:
   void compute(Kernel kernel) override;
+  double compute_stretches(Kernel kernel) override;
 
   /// The elements and edges that one thread computes; it adds only to the vertices `owned`.
   struct Share {
@@ -36,8 +37,10 @@ class PlainBench final : public KernelBench {
   void prepare_edges(const KernelInput& input);
   void prepare_vertices(const KernelInput& input);
 
+  /// Runs a kernel on the part of one thread, on the elements of every `kEvery`-th stretch if `in_stretches`.
   template <class Owned>
-  void run_part(Kernel kernel, const Owned& owned, const Share& share);
+  void run_part(Kernel kernel, const Owned& owned, const Share& share, bool in_stretches);
+  void run_parts(Kernel kernel, bool in_stretches);
 
   int corners_;  ///< corners of each simplex; 1 if there are no simplices
   Share all_;    ///< the whole work, for one thread

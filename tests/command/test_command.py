@@ -129,6 +129,7 @@ def test_compare_keys(command):
         assert method["taken"] == {half: method[half] for half in ("vertices", "elements")}
         for kernel in method["kernels"].values():
             assert kernel["milliseconds"] > 0 and kernel["speedup"] > 0 and kernel["of_band"] > 0
+            assert kernel["samples"] >= 2 and kernel["share"] == 1
     band = result["band"]
     assert band["vertices"] == "band" and band["edge_span"]["max"] < 10
     assert set(band["kernels"]) == {"spmv", "element", "assembly", "springs"}

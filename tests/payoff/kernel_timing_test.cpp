@@ -161,7 +161,42 @@ TEST(TimeInterleaved, TimesEveryKernelInEveryOrder) {
   }
 }
 
-/// Runs that take a given time.
+TEST_P(KernelBenches, RunStretchesOnlyOfLargeMeshes) {
+  const auto bench = prepared(test::tetrahedral_bar(9), GetParam());
+  for (const Kernel kernel : kKernels) {
+    EXPECT_EQ(bench->run_stretches(kernel), 0);
+    EXPECT_EQ(largest(bench->result(kernel)), 0);
+  }
+}
+
+TEST(PlainBench, ComputesAnEighthOfTheElementsInStretches) {
+  const Mesh mesh = test::tetrahedral_bar(200'000);
+  const CsrGraph graph = vertex_graph(mesh);
+  ASSERT_GT(cut_into_simplices(mesh).size(), 1'000'000);
+  for (const int threads : {1, 2}) {
+    const auto whole = prepare_kernels(KernelSet::plain, mesh, graph, threads);
+    const auto part = prepare_kernels(KernelSet::plain, mesh, graph, threads);
+    EXPECT_EQ(part->run_stretches(Kernel::spmv), 0);
+    EXPECT_EQ(part->run_stretches(Kernel::springs), 0);
+    for (const Kernel kernel : {Kernel::element, Kernel::assembly}) {
+      SCOPED_TRACE(std::string(to_string(kernel)) + " on " + std::to_string(threads));
+      whole->run(kernel);
+      EXPECT_EQ(part->run_stretches(kernel), 1.0 / 8);
+      const std::span<const double> some = part->result(kernel);
+      EXPECT_LE(largest(some), 2 * largest(whole->result(kernel)));
+      // the stretches lie in all sixteenths of the mesh
+      const std::size_t size = some.size() / 16;
+      for (std::size_t i = 0; i < 16; ++i) {
+        const std::span<const double> sixteenth = some.subspan(i * size, size);
+        const auto computed = std::ranges::count_if(sixteenth, [](double value) { return value != 0; });
+        EXPECT_NEAR(static_cast<double>(computed), static_cast<double>(size) / 8,
+                    static_cast<double>(size) / 80);
+      }
+    }
+  }
+}
+
+/// Runs that take a given time, and an eighth of it in stretches.
 class SleepingBench final : public KernelBench {
  public:
   explicit SleepingBench(std::chrono::milliseconds time) : time_(time) {}
@@ -180,6 +215,10 @@ class SleepingBench final : public KernelBench {
     ++runs;
     std::this_thread::sleep_for(time_);
   }
+  double compute_stretches(Kernel /*kernel*/) override {
+    std::this_thread::sleep_for(time_ / 8);
+    return 1.0 / 8;
+  }
 
   std::chrono::milliseconds time_;
 };
@@ -195,6 +234,33 @@ TEST(TimeInterleaved, RunsAPlainlySlowOrderOnce) {
   EXPECT_GE(times[0][Kernel::spmv].best_ms, 400.0);
   EXPECT_EQ(times[1][Kernel::spmv].samples, 4);
   EXPECT_GT(times[1][Kernel::spmv].speedup, 3.0);
+}
+
+TEST(TimeInterleaved, TimesAPlainlySlowOrderByStretches) {
+  using std::chrono_literals::operator""ms;
+  SleepingBench slow(800ms);
+  SleepingBench fast(40ms);
+  const std::vector<KernelBench*> benches{&slow, &fast};
+  TimingOptions options = quick();
+  options.in_stretches = true;
+  const std::vector<OrderTimes> times = time_interleaved(benches, options).orders;
+  EXPECT_EQ(slow.runs, 0);
+  EXPECT_EQ(times[0][Kernel::spmv].samples, 1);
+  EXPECT_EQ(times[0][Kernel::spmv].share, 1.0 / 8);
+  EXPECT_GE(times[0][Kernel::spmv].best_ms, 800.0);
+  EXPECT_EQ(times[1][Kernel::spmv].samples, 4);
+  EXPECT_EQ(times[1][Kernel::spmv].share, 1);
+  EXPECT_DOUBLE_EQ(times[1][Kernel::spmv].speedup,
+                   times[0][Kernel::spmv].best_ms / times[1][Kernel::spmv].best_ms);
+}
+
+TEST(TimeInterleaved, CountsTheRunThatShowsThatRunsAreLong) {
+  using std::chrono_literals::operator""ms;
+  SleepingBench bench(20ms);
+  const std::vector<KernelBench*> benches{&bench};
+  const std::vector<OrderTimes> times = time_interleaved(benches, quick()).orders;
+  EXPECT_EQ(times[0][Kernel::spmv].samples, 4);
+  EXPECT_EQ(bench.runs, 4);
 }
 
 TEST(TimeInterleaved, StopsAtTheMostRounds) {
