@@ -65,6 +65,9 @@ AccessStream::Array AccessStream::place(Offset bytes) {
 
 namespace {
 
+/// Number of halvings from which on a mesh is large: a smaller part of assembly is then followed.
+constexpr int kLargeFrom = 4;
+
 /// Predicts the lengths of loops and counts the wrong predictions. Models a processor that remembers some
 /// thousands of sequences of eight lengths, and for each sequence the length that followed it.
 class LoopLengths {
@@ -106,10 +109,9 @@ Offset turns_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, in
   if (kernel == Kernel::spmv) return turns_of_product(graph);
   LoopLengths lengths;
   if (kernel != Kernel::assembly || simplices.dimension == 0) return 0;
-  constexpr int kSampledFrom = 4;
   constexpr Offset kStretch = 4096;
   constexpr Offset kAhead = 12;  // simplices between a prefetch and its use
-  const Offset stride = halvings < kSampledFrom ? kStretch : 8 * kStretch;
+  const Offset stride = halvings < kLargeFrom ? kStretch : 8 * kStretch;
   const auto later = [&](Offset s) { return simplices[std::min(s, simplices.size() - 1)]; };
   Offset counted = 0;
   for (Offset begin = 0; begin < simplices.size(); begin += stride) {
@@ -149,11 +151,16 @@ struct PolledSample {
   }
 };
 
+/// Returns the halvings of a kernel's sample. A product gathers from few lines, so its sample is larger.
+/// Assembly gathers from many lines, so that of a large mesh is smaller.
+int halvings_of(Kernel kernel, int halvings) {
+  const bool is_large = halvings >= kLargeFrom;
+  if (kernel == Kernel::spmv) return std::max(0, halvings - (is_large ? 1 : 2));
+  return kernel == Kernel::assembly && is_large ? halvings + 1 : halvings;
+}
+
 Reuse followed(const AccessStream& stream, Kernel kernel, int halvings) {
-  // a product gathers from few lines and is fast to simulate, so its sample is larger by two halvings
-  constexpr int kOfProduct = 2;
-  ReuseSample reuse(stream.line_count(),
-                    kernel == Kernel::spmv ? std::max(0, halvings - kOfProduct) : halvings);
+  ReuseSample reuse(stream.line_count(), halvings_of(kernel, halvings));
   PolledSample visitor{reuse};
   stream.visit_some(visitor);
   return std::move(reuse).repeated();
@@ -162,8 +169,16 @@ Reuse followed(const AccessStream& stream, Kernel kernel, int halvings) {
 }  // namespace
 
 RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings) {
-  return {followed(AccessStream(kernel, graph, simplices), kernel, halvings), kernel, simplices.dimension,
-          turns_of(kernel, graph, simplices, halvings)};
+  Reuse reuse;
+  Offset turns = 0;
+  take_turns(2, [&](Index turn) {
+    if (turn == 0) {
+      reuse = followed(AccessStream(kernel, graph, simplices), kernel, halvings);
+    } else {
+      turns = turns_of(kernel, graph, simplices, halvings);
+    }
+  });
+  return {std::move(reuse), kernel, simplices.dimension, turns};
 }
 
 RunReuse reuse_of_product(const EntryPattern& pattern, int halvings) {

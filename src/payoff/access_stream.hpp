@@ -286,8 +286,8 @@ struct RunReuse : Reuse {
 /// Returns the reuse of one run of a kernel that is repeated, any run but the first. O(accesses · log
 /// distance) time; about 13 bytes of memory for each line, a fifth of the kernel's own memory. With
 /// `halvings` > 0 the reuse is estimated from a share 2^-halvings of the lines (see ReuseSample), which is
-/// faster; products with a matrix use two halvings fewer. From four halvings on the turns of assembly are
-/// estimated, too.
+/// faster; products with a matrix use two halvings fewer. From four halvings on products use one halving
+/// fewer, assembly one more, and the turns of assembly are estimated, too. Two threads share assembly.
 RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings = 0);
 
 /// Returns the reuse of the product with a matrix that has these entries.

@@ -301,14 +301,17 @@ TEST(ReuseOf, EstimatesTheTurnsOfLargeMeshes) {
 
 TEST(ReuseOf, IsTheSameWhereWhatIsNotSampledIsLeftOut) {
   const Prepared p(test::tetrahedral_bar(400));
-  for (const Kernel kernel : kKernels) {
-    const AccessStream stream(kernel, p.graph, p.simplices);
-    ReuseSample of_all(stream.line_count(), kernel == Kernel::spmv ? 1 : 3);
-    stream.visit([&](Index line, Access how) { of_all.access(line, how); });
-    const Reuse expected = std::move(of_all).repeated();
-    const Reuse found = reuse_of(kernel, p.graph, p.simplices, 3);
-    EXPECT_EQ(found, expected) << to_string(kernel);
-    EXPECT_GT(found.all.accesses(), 0);
+  // the halvings of each kernel's sample, in the order of kKernels
+  for (const auto& [halvings, of_kernels] : {std::pair{3, std::array{1, 3, 3, 3}}, {4, {3, 4, 5, 4}}}) {
+    for (std::size_t k = 0; k < kKernels.size(); ++k) {
+      const AccessStream stream(kKernels[k], p.graph, p.simplices);
+      ReuseSample of_all(stream.line_count(), of_kernels[k]);
+      stream.visit([&](Index line, Access how) { of_all.access(line, how); });
+      const Reuse expected = std::move(of_all).repeated();
+      const Reuse found = reuse_of(kKernels[k], p.graph, p.simplices, halvings);
+      EXPECT_EQ(found, expected) << to_string(kKernels[k]) << ", " << halvings << " halvings";
+      EXPECT_GT(found.all.accesses(), 0);
+    }
   }
 }
 
