@@ -45,12 +45,8 @@ CsrGraph vertex_graph(const CellArrays& cells) {
   for (Index e = 0; e < elements.size() && !cells.shapes.empty(); ++e) {
     by_pieces = by_pieces || is_joined_by_pieces(cells.shapes[elements.cell(e)], whole[e].size());
   }
-  if (!by_pieces) {
-    require_memory_to_join(whole, {.number_of = [&](Index e) { return elements.cell(e); }});
-    return joined_vertices(whole);
-  }
-  const Incidence pieces = pieces_of(cells, elements);
-  require_memory_to_join(pieces, {.number_of = [&](Index piece) {
+  if (!by_pieces) return joined_vertices(whole, {.number_of = [&](Index e) { return elements.cell(e); }});
+  return joined_vertices(pieces_of(cells, elements), {.number_of = [&](Index piece) {
                            Index e = -1;
                            while (piece >= 0) {
                              const auto count = [&](std::span<const Index>) { --piece; };
@@ -59,7 +55,6 @@ CsrGraph vertex_graph(const CellArrays& cells) {
                            }
                            return elements.cell(e);
                          }});
-  return joined_vertices(pieces);
 }
 
 }  // namespace meshorder

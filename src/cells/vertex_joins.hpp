@@ -40,7 +40,7 @@ void for_each_piece(Shape shape, std::span<const Number> cell, const Call& call)
 /// Returns the graph that joins any two vertices of an element (the paper, section 3), or of a piece of it if
 /// `is_joined_by_pieces`. Cells of lower dimension join nothing. O(sum of piece sizes squared · log degree).
 ///
-/// @throws TooLarge as `require_memory_to_join`
+/// @throws TooLarge as `joined_vertices`
 CsrGraph vertex_graph(const CellArrays& cells);
 
 }  // namespace meshorder

@@ -273,12 +273,8 @@ std::uint64_t entries_of_long_rows(IncidenceRef rows) {
   return entries;
 }
 
-}  // namespace
-
-void limit_joins(std::uint64_t bytes, std::uint64_t bytes_of_entry) {
-  limit_on_joins = {bytes, bytes_of_entry};
-}
-
+/// Throws TooLarge if rows of more than `kManyJoined` members would make a graph beyond the limit; the
+/// message names the longest row. O(entries).
 void require_memory_to_join(IncidenceRef rows, const JoinNames& names) {
   Index longest = -1;
   std::size_t most = kManyJoined;
@@ -298,20 +294,27 @@ void require_memory_to_join(IncidenceRef rows, const JoinNames& names) {
       size_text(limit) + "; " + names.remedy + ", or raise the memory limit (--limit-memory)");
 }
 
-CsrGraph joined_vertices(IncidenceRef elements) {
-  require_memory_to_join(elements);
+}  // namespace
+
+void limit_joins(std::uint64_t bytes, std::uint64_t bytes_of_entry) {
+  limit_on_joins = {bytes, bytes_of_entry};
+}
+
+CsrGraph joined_vertices(IncidenceRef elements, const JoinNames& names) {
+  require_memory_to_join(elements, names);
   std::vector<Offset> offsets(Offset{elements.vertex_count} + 1, 0);
   std::vector<Rows> rows = find_rows(elements, offsets);
   std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
   return with_sorted_rows(std::move(offsets), std::move(rows), is_scattered(elements));
 }
 
+CsrGraph joined_vertices(IncidenceRef elements) { return joined_vertices(elements, {}); }
+
 CsrGraph joined_by_vertex(IncidenceRef elements) {
-  const Incidence at_vertex = transposed(elements);
-  require_memory_to_join(at_vertex, {.row = "vertex",
-                                     .members = "elements",
-                                     .remedy = "join elements by facets (--elements fiedler-facet)"});
-  return joined_vertices(at_vertex);
+  return joined_vertices(transposed(elements),
+                         {.row = "vertex",
+                          .members = "elements",
+                          .remedy = "join elements by facets (--elements fiedler-facet)"});
 }
 
 }  // namespace meshorder

@@ -32,8 +32,7 @@ struct JoinNames {
   std::function<Index(Index)> number_of = {};  ///< returns the number of a row; empty: the row's place
 };
 
-/// Throws TooLarge if rows of more than `kManyJoined` members would make a graph beyond the limit; the
-/// message names the longest row. O(entries).
-void require_memory_to_join(IncidenceRef rows, const JoinNames& names = {});
+/// As `joined_vertices`, with other words in the message of TooLarge.
+CsrGraph joined_vertices(IncidenceRef elements, const JoinNames& names);
 
 }  // namespace meshorder
