@@ -3,6 +3,7 @@
 // The functions that the page's worker calls: they take files in memory, order one as `meshorder order` does,
 // and return what the page shows. The module itself calls only `tell`.
 #include "base/memory.hpp"
+#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/format.hpp"
 #include "matrix_points.hpp"
@@ -16,6 +17,7 @@
 #include <meshorder/io.hpp>
 
 #include <emscripten.h>
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
@@ -130,7 +132,7 @@ void order(const std::string& input, const std::string& output, const MeshMethod
   keep_cells(mesh, {.format = format.key(), .notes = &notes});
   command::require_points(mesh, input, methods.vertices, methods.elements);
   tell("graph", 0.3);
-  std::optional<CsrGraph> graph = vertex_graph(mesh);
+  const CsrGraph graph = vertex_graph(mesh);
   const std::vector<Index> vertices = add_surface(mesh);
   const std::string cells = command::cells_in_words(mesh);
 
@@ -139,12 +141,15 @@ void order(const std::string& input, const std::string& output, const MeshMethod
     tell(std::string(now.stage).c_str(), 0.4 + 0.3 * std::max(now.fraction, 0.0));
     return true;
   };
-  const MeshOrder made = reorder(mesh, options, graph);
+  const std::optional<Permutation> arranged = arrange_cells(mesh, format);
+  MeshOrder made = in_call(options.order.run, [&] { return compute_order_in_file(mesh, graph, options); });
   const Permutation& of_vertices = made.vertices.permutation;
   const Permutation as_is = Permutation::identity(mesh.vertex_count());
-  const command::SpanChange spans{quick_edge_span(*graph, {}),
-                                  quick_edge_span(*graph, of_vertices.old_to_new())};
-  command::note_no_better(*graph, options, of_vertices, notes);
+  const command::SpanChange spans{quick_edge_span(graph, {}),
+                                  quick_edge_span(graph, of_vertices.old_to_new())};
+  command::note_no_better(graph, options, of_vertices, notes);
+  made.cells.permutation =
+      move_in_file(mesh, of_vertices, std::move(made.cells.permutation), &format, arranged, options.ids);
   command::note_no_better(mesh, options, made.cells.permutation, notes);
   command::note_convergence(made.vertices.fiedler, "the vertices", notes);
   command::note_convergence(made.cells.fiedler, "the elements", notes);
@@ -152,11 +157,11 @@ void order(const std::string& input, const std::string& output, const MeshMethod
   add_ranks("after", vertices, of_vertices);
 
   tell("writing", 0.7);
-  (void)write_mesh_to(mesh, {output, files}, {.notes = &notes});
+  write_arranged(mesh, {output, files}, {.notes = &notes}, format);
   for (auto& [name, bytes] : files.take()) parts.push_back({"file:" + name, std::move(bytes)});
 
   std::vector<std::string> lines = command::lines_of_order(made, {}, spans, stored_matrix(mesh));
-  if (command::has_new_numbers(mesh, made, options))
+  if (command::has_new_numbers(mesh, made, format, options.ids))
     lines.push_back(fmt::format("{:<10} {}", "numbers", "new for vertices and cells"));
   parts.push_back({"lines", join(
                                 lines, [](const std::string& line) { return visible(line); }, "\n")});

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 #include "command.hpp"
+#include "confinement.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
 #include "io/openfoam/cell_order.hpp"
@@ -14,7 +15,6 @@
 #include "lab/support/machine.hpp"
 #include "matrix_report.hpp"
 #include "mesh/stored_matrix.hpp"
-#include "mesh_files.hpp"
 #include "payoff/advice.hpp"
 #include "progress.hpp"
 #include "wording.hpp"
@@ -107,7 +107,7 @@ std::string unique_name(const std::string& file, const std::vector<MeshRecord>& 
 std::string add_mesh(Page& page, const std::string& file, const ReportArguments& arguments,
                      Progress& progress, double from, double to, Notes& notes) {
   progress.stage("reading " + file, from, from + 0.1 * (to - from));
-  const Mesh mesh = read_to_work_on(file, notes);
+  const Mesh mesh = read_input(file, notes);
   const bool is_matrix = stored_matrix(mesh) != nullptr;
   if (mesh.cells.highest_dimension() < (is_matrix ? 1 : 2))
     throw InputError(

@@ -11,7 +11,6 @@
 #include "lab/scenario/frames.hpp"
 #include "lab/scenario/motion_metrics.hpp"
 #include "lab/scenario/simulation.hpp"
-#include "mesh_files.hpp"
 #include "progress.hpp"
 #include "simulate_report.hpp"
 #include "wording.hpp"
@@ -225,7 +224,7 @@ void run(const SimulateArguments& arguments) {
     path = mesh_path(scenario, progress);
     progress.stage("reading " + path, 0.5, 0.7);
     const Stopwatch reading;
-    Mesh mesh = read_to_work_on(scenario.mesh_file(path), notes);
+    Mesh mesh = read_input(scenario.mesh_file(path), notes);
     read_seconds = reading.seconds();
     progress.stage("setting up", 0.7, 1);
     simulation = set_up(std::move(scenario), std::move(mesh), path, arguments.ordering);

@@ -291,7 +291,7 @@ void run(const Arguments& arguments, const Communicator& communicator) {
   const std::optional<FileHead> head = head_of(communicator, arguments);
   const std::optional<ExodusSlices> exodus = head ? std::nullopt : exodus_slices_of(communicator, arguments);
   const bool by_all = head || exodus;
-  WholeMesh whole;
+  MeshToOrder whole;
   if (!by_all) {
     whole = read_at_root(communicator, arguments.with_output(), parse<Ids>(arguments.ids), notes);
     outputs.check(whole.mesh);
@@ -314,7 +314,7 @@ void run(const Arguments& arguments, const Communicator& communicator) {
   } else if (exodus) {
     outputs.write(*exodus, order, before, notes);
   } else {
-    move_at_root(communicator, whole, order, arguments.with_output(), parse<Ids>(arguments.ids));
+    move_at_root(communicator, whole, order, !arguments.maps.empty(), parse<Ids>(arguments.ids));
     outputs.write(whole, order, notes);
   }
   outputs.commit(notes);

@@ -36,37 +36,35 @@ void note_parts(const Mesh& mesh, const std::vector<GlobalIndex>& starts, Maps& 
 
 }  // namespace
 
-WholeMesh read_at_root(const Communicator& communicator, const MeshFiles& files, Ids ids, Notes& notes) {
+MeshToOrder read_at_root(const Communicator& communicator, const MeshFiles& files, Ids ids, Notes& notes) {
   return communicator.at_root([&] {
     check_holds_ids(output_format_of(files.output), ids);
-    WholeMesh whole;
-    static_cast<MeshToOrder&>(whole) = read_to_order(files, notes);
+    MeshToOrder whole = read_to_order(files, notes);
     if (whole.mesh.cell_count() > kManyCells) {
       notes.push_back(with_commas(whole.mesh.cell_count()) +
                       " cells are read and written by rank 0, which needs memory for all of them");
     }
-    whole.arranged = arrange_cells(whole.mesh, output_format_of(files.output, whole.mesh.format));
+    whole.arranged = arrange_cells(whole.mesh, *whole.format);
     return whole;
   });
 }
 
-void move_at_root(const Communicator& communicator, WholeMesh& whole,
-                  const distributed::DistributedOrder& order, const MeshFiles& files, Ids ids) {
+void move_at_root(const Communicator& communicator, MeshToOrder& whole,
+                  const distributed::DistributedOrder& order, bool has_maps, Ids ids) {
   const std::vector<GlobalIndex> vertices = communicator.gathered_at_root(order.new_vertices);
   const std::vector<GlobalIndex> cells = communicator.gathered_at_root(order.cells);
   communicator.at_root([&] {
     whole.maps.vertices = Permutation::from_old_to_new(narrowed(vertices));
-    const Format& to = output_format_of(files.output, whole.mesh.format);
-    const Permutation places =
+    Permutation places =
         stored_matrix(whole.mesh) != nullptr
             ? Permutation::identity(whole.mesh.cell_count())
             : with_groups_together(
                   whole.mesh,
-                  permutation_within_classes(slot_classes(cell_arrays(whole.mesh)), narrowed(cells)), to);
-    apply_reordering(whole.mesh, whole.maps.vertices, places, ids);
-    whole.maps.cells = whole.arranged ? whole.arranged->then(places) : places;
-    if (to.settle_cells != nullptr) whole.maps.cells = whole.maps.cells.then(to.settle_cells(whole.mesh));
-    if (!files.maps.empty()) note_parts(whole.mesh, order.report.part_starts, whole.maps);
+                  permutation_within_classes(slot_classes(cell_arrays(whole.mesh)), narrowed(cells)),
+                  *whole.format);
+    whole.maps.cells =
+        move_in_file(whole.mesh, whole.maps.vertices, std::move(places), whole.format, whole.arranged, ids);
+    if (has_maps) note_parts(whole.mesh, order.report.part_starts, whole.maps);
   });
 }
 

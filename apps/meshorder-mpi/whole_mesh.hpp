@@ -12,23 +12,17 @@
 
 namespace meshorder::command {
 
-/// A mesh that rank 0 reads, moves and writes, with its cells in the order that the output's format needs.
-struct WholeMesh : MeshToOrder {
-  std::optional<Permutation> arranged;  ///< from the file's order of cells to this order, if they differ
-};
-
-/// Reads a mesh into the memory of the root. Every rank has to call it.
+/// Reads a mesh into the memory of the root, with its cells in the order that the output's format needs.
+/// Every rank has to call it.
 ///
 /// @param files  with an output, which sets the format
 /// @throws SharedError for a faulty file, and for cells or ids that the output would have to hold but cannot
-[[nodiscard]] WholeMesh read_at_root(const distributed::Communicator& communicator, const MeshFiles& files,
-                                     Ids ids, Notes& notes);
+[[nodiscard]] MeshToOrder read_at_root(const distributed::Communicator& communicator, const MeshFiles& files,
+                                       Ids ids, Notes& notes);
 
 /// Moves the mesh at the root into its new order and fills in its maps. Entries of a matrix stay in the order
 /// of the file. Every rank has to call it.
-///
-/// @param files  as in `read_at_root`
-void move_at_root(const distributed::Communicator& communicator, WholeMesh& whole,
-                  const distributed::DistributedOrder& order, const MeshFiles& files, Ids ids);
+void move_at_root(const distributed::Communicator& communicator, MeshToOrder& whole,
+                  const distributed::DistributedOrder& order, bool has_maps, Ids ids);
 
 }  // namespace meshorder::command

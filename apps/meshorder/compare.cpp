@@ -9,7 +9,6 @@
 #include "matrix_points.hpp"
 #include "matrix_report.hpp"
 #include "mesh/stored_matrix.hpp"
-#include "mesh_files.hpp"
 #include "ordering/method.hpp"
 #include "payoff/machine.hpp"
 #include "progress.hpp"
@@ -147,7 +146,7 @@ void run(const CompareArguments& arguments) {
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.05);
   Notes notes;
-  Mesh mesh = read_to_work_on(arguments.input, notes, kBytesToMeasure * (orders + 3));
+  Mesh mesh = read_input(arguments.input, notes, kBytesToMeasure * (orders + 3));
   take_points(mesh, arguments.input, arguments.points);
   if (!layouts.empty() && stored_matrix(mesh) != nullptr) {
     throw CommandError(

@@ -291,10 +291,12 @@ void confine(const Files& files) {
   work = of_child;
 }
 
-Mesh read_input(const FilePath& path, Notes& notes) {
+Mesh read_input(const FilePath& path, Notes& notes, std::uint64_t bytes_of_entry) {
   std::optional<Reading> reading;
   if (work != nullptr) reading.emplace(path.string());
-  return read_mesh_from(path, {.notes = &notes});
+  Mesh mesh = read_mesh_from(path, {.notes = &notes});
+  limit_joins(left_by_last_reading(), bytes_of_entry);
+  return mesh;
 }
 
 }  // namespace meshorder::command

@@ -1,10 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "graph/join_limit.hpp"
 #include "io/stream/file_path.hpp"
 #include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -33,8 +35,16 @@ void confine(const Files& files);
 /// Trusts all files that this process reads: `confine` then does nothing.
 void trust_files();
 
+/// Bytes for each entry of a graph, like kBytesToOrder: kBytesToPredict to predict times; kBytesToMeasure to
+/// run kernels, for each order that the command holds in memory at a time.
+inline constexpr std::uint64_t kBytesToPredict = 64;
+inline constexpr std::uint64_t kBytesToMeasure = 100;
+
 /// Reads a mesh as `meshorder::read_mesh` does. In a confined process the reading may take ten seconds of
-/// processor time and one more for each MB, and output of libraries is dropped.
-Mesh read_input(const FilePath& path, Notes& notes);
+/// processor time and one more for each MB, and output of libraries is dropped. For the rest of the process,
+/// graphs may use the part of the memory limit that the reading has left.
+///
+/// @param bytes_of_entry  as in `limit_joins`
+Mesh read_input(const FilePath& path, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
 
 }  // namespace meshorder::command

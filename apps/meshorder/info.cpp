@@ -14,7 +14,6 @@
 #include "mesh/cells.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/stored_matrix.hpp"
-#include "mesh_files.hpp"
 #include "metrics/edge_span.hpp"
 #include "payoff/advice.hpp"
 #include "payoff/machine.hpp"
@@ -342,8 +341,7 @@ void run(const InfoArguments& arguments) {
   confine({.meshes = {arguments.input}, .others = named_files(arguments.points)});
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.3);
-  Mesh mesh =
-      read_to_work_on(arguments.input, notes, arguments.measure ? 3 * kBytesToMeasure : kBytesToPredict);
+  Mesh mesh = read_input(arguments.input, notes, arguments.measure ? 3 * kBytesToMeasure : kBytesToPredict);
   take_points(mesh, arguments.input, arguments.points);
 
   const CellSimplices simplices(mesh);

@@ -2,11 +2,8 @@
 #include "mesh_files.hpp"
 
 #include "confinement.hpp"
-#include "io/format.hpp"
 #include "io/kept_cells.hpp"
-#include "io/stream/output_file.hpp"
 #include "io/stream/output_set.hpp"
-#include "io/stream/read_limits.hpp"
 #include "matrix_points.hpp"
 #include "wording.hpp"
 
@@ -25,21 +22,9 @@ void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids
           more_maps);
 }
 
-Mesh read_to_work_on(const FilePath& path, Notes& notes, std::uint64_t bytes_of_entry) {
-  Mesh mesh = read_input(path, notes);
-  limit_joins(left_by_last_reading(), bytes_of_entry);
-  return mesh;
-}
-
-void check_can_write(const MeshFiles& files) {
-  (void)OutputFile(files.output);
-  if (!files.maps.empty()) check_can_write_maps(files.maps);
-}
-
 std::vector<Index> keep_wanted(Mesh& mesh, const std::string& input, int dimension, Notes& notes) {
-  if (dimension < 0) return all_cells(mesh);
   try {
-    return keep_cells(mesh, {.dimension = dimension, .notes = &notes});
+    return keep_dimension(mesh, dimension, notes);
   } catch (const InvalidArgument& fault) {
     throw InputError(input, fault.what(), "it has " + cells_in_words(mesh));
   }
@@ -48,12 +33,12 @@ std::vector<Index> keep_wanted(Mesh& mesh, const std::string& input, int dimensi
 MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t bytes_of_entry) {
   MeshToOrder result;
   Mesh& mesh = result.mesh;
-  mesh = read_to_work_on(files.input, notes, bytes_of_entry);
-  const Format& format = output_format_of(files.output, mesh.format);
+  mesh = read_input(files.input, notes, bytes_of_entry);
+  result.format = &output_format_of(files.output, mesh.format);
   const Index cells_read = mesh.cell_count();
   const std::vector<Index> wanted = keep_wanted(mesh, files.input, files.keeping.dimension, notes);
-  const std::vector<Index> held = files.keeping.strict ? all_cells(mesh) : cells_for(mesh, format, notes);
-  require_held_cells(mesh, held, files.output, format);  // fail before the work
+  const std::vector<Index> held =
+      cells_to_write(mesh, files.output, *result.format, files.keeping.strict, notes);
   keep_cells_at(mesh, held, notes);
   if (mesh.cell_count() < cells_read) {
     result.maps.kept.reserve(held.size());
@@ -69,14 +54,13 @@ MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t by
 std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
                                        Notes& notes) {
   if (!files.output.empty())
-    write_mesh_to(ordered.mesh, {files.output, outputs}, {.strict = files.keeping.strict, .notes = &notes});
+    write_arranged(ordered.mesh, {files.output, outputs}, {.strict = files.keeping.strict, .notes = &notes},
+                   *ordered.format);
   if (files.maps.empty()) return {};
   MeshChecksums after = checksums_of(ordered.mesh);
   // a matrix or graph is written as it was read, without the points given for its rows
-  if (!files.points.empty()) {
-    const std::string format = output_format_of(files.output, ordered.mesh.format).key();
-    if (format == "matrixmarket" || format == "metis") after.points = ordered.before.points;
-  }
+  const bool has_points = ordered.format->name != "MatrixMarket" && ordered.format->name != "METIS";
+  if (!files.points.empty() && !has_points) after.points = ordered.before.points;
   return write_maps(ordered.maps, ordered.before, after, files.maps, outputs);
 }
 

@@ -3,12 +3,13 @@
 
 #include "command.hpp"
 #include "graph/join_limit.hpp"
-#include "io/stream/file_path.hpp"
+#include "io/format.hpp"
 #include "maps.hpp"
 #include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,10 @@ struct MeshFiles {
 /// A mesh as it was read, to be ordered and written.
 struct MeshToOrder {
   Mesh mesh;
-  Maps maps;             ///< ids and kept cells, without the permutations
-  MeshChecksums before;  ///< only if maps are wanted
+  const Format* format = nullptr;       ///< of the output
+  std::optional<Permutation> arranged;  ///< what `arrange_cells` did for this format
+  Maps maps;                            ///< ids and kept cells, without the permutations
+  MeshChecksums before;                 ///< only if maps are wanted
 };
 
 /// Adds --ids, whose value parse<Ids> reads, --only, --strict and --maps.
@@ -35,20 +38,6 @@ struct MeshToOrder {
 /// @param more_maps  other files written with the maps, as the end of a sentence of the help
 void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids,
                         const std::string& more_maps = "");
-
-/// Reads a mesh to compute with. For the rest of the process, its graphs may use the part of the memory limit
-/// that the reading has left.
-///
-/// @param bytes_of_entry  as in `limit_joins`
-Mesh read_to_work_on(const FilePath& path, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
-
-/// Bytes for each entry of a graph, like kBytesToOrder: kBytesToPredict to predict times; kBytesToMeasure to
-/// run kernels, for each order that the command holds in memory at a time.
-inline constexpr std::uint64_t kBytesToPredict = 64;
-inline constexpr std::uint64_t kBytesToMeasure = 100;
-
-/// Throws, before the work, if the output or its maps cannot be written.
-void check_can_write(const MeshFiles& files);
 
 /// Keeps the cells of one dimension, or all cells for −1. Returns the positions that the kept cells had
 /// before. Throws InputError for the file `input` if it has no such cells.

@@ -3,6 +3,7 @@
 #include "confinement.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
+#include "io/stream/output_file.hpp"
 #include "io/stream/output_set.hpp"
 #include "machines.hpp"
 #include "matrix_points.hpp"
@@ -109,27 +110,36 @@ class Ordering {
     progress_.stage("reading " + arguments_.input, 0, 0.4);
     const std::uint64_t bytes_of_race = arguments_.measure ? 3 * kBytesToMeasure : kBytesToPredict;
     job_ = read_to_order(arguments_, notes_, is_race(arguments_) ? bytes_of_race : kBytesToOrder);
-    options_.format = output_format_of(arguments_.output, job_.mesh.format).key();
+    options_.format = job_.format->key();
     require_points(job_.mesh, arguments_.input, options_.methods.vertices, options_.methods.elements);
     times_.end("read");
     times_.set_bytes("read", bytes_on_disk(arguments_.input));
   }
 
-  /// Moves the mesh into its new order.
+  /// Computes the order of the mesh, arranged as in the output.
   void order() {
     if (is_race(arguments_)) calibrate();
     progress_.stage("ordering", 0.4, 0.7);
     Mesh& mesh = job_.mesh;
     if (!options_.group_by.empty()) groups_ = grouping_by(mesh, options_.group_by);
-    std::optional<CsrGraph> graph = vertex_graph(mesh);
+    const CsrGraph graph = vertex_graph(mesh);
     times_.end("graph");
-    if (is_race(arguments_)) run_race(*graph);
-    order_ =
-        reorder(mesh, options_, std::move(graph), [&](const CsrGraph& before, const Permutation& vertices) {
-          times_.end("order");
-          judge(before, vertices);
-          times_.end("spans");
-        });
+    if (is_race(arguments_)) run_race(graph);
+    check_holds_ids(*job_.format, options_.ids);
+    job_.arranged = arrange_cells(mesh, *job_.format);
+    order_ = compute_order_in_file(mesh, graph, options_);
+    times_.end("order");
+    const Permutation& vertices = order_.vertices.permutation;
+    spans_ = {quick_edge_span(graph, {}), quick_edge_span(graph, vertices.old_to_new())};
+    if (!raced_) note_no_better(graph, options_, vertices, notes_);
+    times_.end("spans");
+  }
+
+  void move() {
+    Mesh& mesh = job_.mesh;
+    order_.cells.permutation =
+        move_in_file(mesh, order_.vertices.permutation, std::move(order_.cells.permutation), job_.format,
+                     job_.arranged, options_.ids);
     if (!arguments_.maps.empty()) {
       job_.maps.vertices = order_.vertices.permutation;
       job_.maps.cells = order_.cells.permutation;
@@ -163,7 +173,7 @@ class Ordering {
     if (raced_) console_.print("{:<10} {}", "race", in_words(*raced_));
     for (const std::string& line : lines_of_order(order_, groups_, spans_, stored_matrix(job_.mesh)))
       console_.print("{}", line);
-    if (has_new_numbers(job_.mesh, order_, options_)) {
+    if (has_new_numbers(job_.mesh, order_, *job_.format, options_.ids)) {
       console_.print("{:<10} {}", "numbers", "new for vertices and cells; --ids keep keeps the old ones");
     }
     console_.print("{:<10} {}", "wrote", arguments_.output);
@@ -193,12 +203,6 @@ class Ordering {
     options_.methods = raced_->methods();
     if (!raced_->advice.doubt.empty()) notes_.push_back(raced_->advice.doubt);
     times_.end("race");
-  }
-
-  /// Compares the order of vertices with the file's own. `graph` is the graph before the mesh moves.
-  void judge(const CsrGraph& graph, const Permutation& vertices) {
-    spans_ = {quick_edge_span(graph, {}), quick_edge_span(graph, vertices.old_to_new())};
-    if (!raced_) note_no_better(graph, options_, vertices, notes_);
   }
 
   [[nodiscard]] nlohmann::ordered_json to_json() const {
@@ -238,11 +242,12 @@ class Ordering {
 };
 
 void run(const OrderArguments& arguments) {
-  // report wrong arguments before the work
+  // report wrong arguments and outputs that cannot be written before the work
   check(arguments);
   std::optional<MachineChoice> machine;
   if (is_race(arguments)) machine = choose_machine(arguments.machine, arguments.all_threads);
-  check_can_write(arguments);
+  (void)OutputFile(arguments.output);
+  if (!arguments.maps.empty()) check_can_write_maps(arguments.maps);
   confine({.meshes = {arguments.input},
            .others = named_files(arguments.points),
            .outputs = {arguments.output},
@@ -250,6 +255,7 @@ void run(const OrderArguments& arguments) {
   Ordering ordering(arguments, std::move(machine));
   ordering.read();
   ordering.order();
+  ordering.move();
   ordering.write();
   ordering.print();
 }

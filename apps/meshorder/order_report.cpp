@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "order_report.hpp"
 
-#include "io/format.hpp"
 #include "mesh/graphs.hpp"
 #include "ordering/judgement.hpp"
 #include "payoff/quantities.hpp"
@@ -60,10 +59,10 @@ void note_no_better(const Mesh& mesh, const ReorderOptions& options, const Permu
   if (!reason.empty()) notes.push_back(reason + "; --elements original keeps the order");
 }
 
-bool has_new_numbers(const Mesh& mesh, const MeshOrder& order, const ReorderOptions& options) {
+bool has_new_numbers(const Mesh& mesh, const MeshOrder& order, const Format& to, Ids ids) {
   const bool are_moved = !order.vertices.permutation.is_identity() || !order.cells.permutation.is_identity();
   const bool are_bound = mesh.format_metadata != nullptr && mesh.format_metadata->binds_ids();
-  return are_moved && !are_bound && options.ids != Ids::keep && has_numbers(format_named(options.format));
+  return are_moved && !are_bound && ids != Ids::keep && has_numbers(to);
 }
 
 }  // namespace meshorder::command

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "graph/csr_graph.hpp"
+#include "io/format.hpp"
 #include "mesh/groups.hpp"
 #include "mesh/stored_matrix.hpp"
 #include "metrics/edge_span.hpp"
-#include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
 
 #include <optional>
@@ -36,8 +36,8 @@ void note_no_better(GraphRef graph, const ReorderOptions& options, const Permuta
 /// reordered by `cells`.
 void note_no_better(const Mesh& mesh, const ReorderOptions& options, const Permutation& cells, Notes& notes);
 
-/// Returns whether the numbers of vertices or cells in the output differ from those in the input. `mesh` has
-/// been reordered.
-bool has_new_numbers(const Mesh& mesh, const MeshOrder& order, const ReorderOptions& options);
+/// Returns whether the numbers of vertices or cells in an output of the format `to` differ from those in the
+/// input. `mesh` has been reordered.
+bool has_new_numbers(const Mesh& mesh, const MeshOrder& order, const Format& to, Ids ids);
 
 }  // namespace meshorder::command

@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -97,6 +96,14 @@ MeshOrder compute_order_in_file(const Mesh& mesh, const CsrGraph& graph, const R
 /// Throws InvalidArgument for `Ids::keep` if the format cannot hold ids.
 void check_holds_ids(const Format& format, Ids ids);
 
+/// Moves a valid mesh, whose cells `arrange_cells` arranged for the format `to`, and updates its ids.
+///
+/// @param to        null: a mesh without a format
+/// @param arranged  what `arrange_cells` returned
+/// @return the new places of the cells as they were before `arrange_cells`
+Permutation move_in_file(Mesh& mesh, const Permutation& vertices, Permutation cells, const Format* to,
+                         const std::optional<Permutation>& arranged, Ids ids);
+
 /// Applies permutations that `reorder` returned for a mesh to be written in the format `to`. Call
 /// `check_holds_ids` first. Throws as the public `apply_reordering`.
 void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells,
@@ -111,14 +118,14 @@ Mesh read_mesh_from(const FilePath& path, const ReadOptions& options = {});
 
 /// As the public `write_mesh`, for a valid mesh; if `path` belongs to an OutputSet, its commit puts the files
 /// in place. Returns nothing if the cells stay in their places.
-std::optional<Permutation> write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options);
-
-/// As the public `reorder`, for a valid mesh.
 ///
-/// @param graph    the vertex graph; computed if there is none
-/// @param ordered  called with the graph and the new order of vertices, before the mesh moves
-MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph> graph,
-                  const std::function<void(const CsrGraph&, const Permutation&)>& ordered);
+/// @param format  null: the format of the extension
+std::optional<Permutation> write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options,
+                                         const Format* format = nullptr);
+
+/// As `write_mesh_to`, for a mesh whose cells are those of the file, in their places.
+void write_arranged(const Mesh& mesh, const FilePath& path, const WriteOptions& options,
+                    const Format& format);
 
 // The extension .inp belongs to two formats: Abaqus decks and AVS UCD.
 

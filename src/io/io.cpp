@@ -163,40 +163,37 @@ void refuse_losses(const Mesh& mesh, const FilePath& path, const Format& format)
     throw InputError(path.string(), lost.front(), "file not written: --strict forbids data loss");
 }
 
-/// Writes a valid mesh. Returns the new places of its cells, or nothing if they stay.
-std::optional<Permutation> write_valid(const Mesh& mesh, const FilePath& path, const Format& format,
-                                       const WriteOptions& options) {
-  Notes ignored;
-  Notes& notes = options.notes != nullptr ? *options.notes : ignored;
-  Notes left_out;
-  const std::vector<Index> kept = options.strict ? all_cells(mesh) : cells_for(mesh, format, left_out);
-  require_held_cells(mesh, kept, path, format);
-  const auto write = [&](const Mesh& written) {
-    if (options.strict) refuse_losses(written, path, format);
-    notes.insert(notes.end(), left_out.begin(), left_out.end());
-    if (path.store() != nullptr || path.set() != nullptr) return format.write(written, path, notes);
-    OutputSet files;
-    format.write(written, {path, files}, notes);
-    files.commit();
-    notes.insert(notes.end(), files.notes().begin(), files.notes().end());
-  };
-  if (index_size(kept) == mesh.cell_count() && has_places_of(format, mesh)) {
-    write(mesh);
-    return {};
-  }
-  Mesh arranged = mesh;
-  keep_cells_at(arranged, kept, left_out);
-  const Permutation of_kept =
-      arrange_cells(arranged, format).value_or(Permutation::identity(arranged.cell_count()));
-  write(arranged);
-  return places_of(kept, of_kept, mesh.cell_count());
-}
-
 }  // namespace
 
-std::optional<Permutation> write_mesh_to(const Mesh& mesh, const FilePath& path,
-                                         const WriteOptions& options) {
-  return write_valid(mesh, path, output_format_of(path.path(), mesh.format), options);
+void write_arranged(const Mesh& mesh, const FilePath& path, const WriteOptions& options,
+                    const Format& format) {
+  Notes ignored;
+  Notes& notes = options.notes != nullptr ? *options.notes : ignored;
+  if (options.strict) refuse_losses(mesh, path, format);
+  if (path.store() != nullptr || path.set() != nullptr) return format.write(mesh, path, notes);
+  OutputSet files;
+  format.write(mesh, {path, files}, notes);
+  files.commit();
+  notes.insert(notes.end(), files.notes().begin(), files.notes().end());
+}
+
+std::optional<Permutation> write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options,
+                                         const Format* format) {
+  if (format == nullptr) format = &output_format_of(path.path(), mesh.format);
+  Notes left_out;
+  const std::vector<Index> kept = cells_to_write(mesh, path, *format, options.strict, left_out);
+  std::optional<Permutation> places;
+  std::optional<Mesh> arranged;
+  if (index_size(kept) < mesh.cell_count() || !has_places_of(*format, mesh)) {
+    arranged = mesh;
+    keep_cells_at(*arranged, kept, left_out);
+    places =
+        places_of(kept, arrange_cells(*arranged, *format).value_or(Permutation::identity(index_size(kept))),
+                  mesh.cell_count());
+  }
+  if (options.notes != nullptr) options.notes->insert(options.notes->end(), left_out.begin(), left_out.end());
+  write_arranged(arranged ? *arranged : mesh, path, options, *format);
+  return places;
 }
 
 Mesh read_mesh_from(const FilePath& path, const ReadOptions& options) {
@@ -250,7 +247,7 @@ MemoryFiles write_mesh_to_memory(const Mesh& mesh, std::string_view format, std:
   check_mesh(mesh);
   MemoryStore store;
   const std::optional<Permutation> cells =
-      write_valid(mesh, {std::string(name), store}, format_named(format), {.notes = notes});
+      write_mesh_to(mesh, {std::string(name), store}, {.notes = notes}, &format_named(format));
   return {std::move(store).files(), cells ? *cells : Permutation::identity(mesh.cell_count())};
 }
 

@@ -137,12 +137,15 @@ void keep_blocks(std::vector<Index>& blocks, const std::vector<Index>& kept) {
   blocks = std::move(result);
 }
 
-}  // namespace
-
 std::vector<Index> all_cells(const Mesh& mesh) { return index_range(0, mesh.cell_count()); }
 
-std::vector<Index> cells_for(const Mesh& mesh, const Format& format, Notes& notes) {
-  const std::vector<TypeCount> left_out = types_left_out(mesh, counted_types(mesh), format);
+// In the next functions, `types` are those of all cells of the mesh.
+
+/// Returns the positions of the cells to be written in the format, ascending: all cells if the format lacks a
+/// type of the highest dimension. Notes the cells left out, a line for each type. O(cells).
+std::vector<Index> cells_for(const Mesh& mesh, const std::vector<TypeCount>& types, const Format& format,
+                             Notes& notes) {
+  const std::vector<TypeCount> left_out = types_left_out(mesh, types, format);
   for (const TypeCount& type : left_out) {
     notes.push_back(type.count == 1
                         ? fmt::format("{} is left out: {} cannot hold it", in_words(type), format.name)
@@ -150,6 +153,33 @@ std::vector<Index> cells_for(const Mesh& mesh, const Format& format, Notes& note
   }
   return left_out.empty() ? all_cells(mesh) : cells_but(mesh, left_out);
 }
+
+/// Returns why a file of the format cannot hold all cells of a mesh: a type that the format has no place for,
+/// or a conflict of types. Returns an empty text if the file can hold all cells. O(cells).
+std::string fault_of_cells(const Mesh& mesh, std::vector<TypeCount> types, const Format& format) {
+  std::erase_if(types, [&](const TypeCount& type) { return format.holds(mesh, type.shape, type.vertices); });
+  // the message names a type of this dimension: lower types may be left out
+  const int highest = highest_dimension_of(types);
+  for (const TypeCount& type : types) {
+    if (dimension(type.shape) < highest) continue;
+    return fmt::format("{} cannot hold a cell of type {}", format.name, type_name(type.shape, type.vertices));
+  }
+  return format.conflict == nullptr ? "" : format.conflict(mesh);
+}
+
+/// Returns advice such as "write .msh or .vtu": formats that hold all cells of a mesh. O(cells · formats).
+std::string advice_on_formats(const Mesh& mesh, const std::vector<TypeCount>& types) {
+  std::vector<std::string_view> names;
+  for (const Format& format : all_formats()) {
+    if (fault_of_cells(mesh, types, format).empty()) names.push_back(format.extensions.front());
+  }
+  if (names.empty()) return "no format that meshorder writes holds all of its cells";
+  const std::string_view last = names.back();
+  names.pop_back();
+  return fmt::format("write {}{}{}", join(names), names.empty() ? "" : " or ", last);
+}
+
+}  // namespace
 
 void keep_cells_at(Mesh& mesh, const std::vector<Index>& kept, Notes& notes) {
   if (index_size(kept) == mesh.cell_count()) return;
@@ -189,65 +219,47 @@ void keep_cells_at(Mesh& mesh, const std::vector<Index>& kept, Notes& notes) {
   });
 }
 
-std::string fault_of_cells(const Mesh& mesh, const Format& format) {
-  std::vector<TypeCount> types = counted_types(mesh);
-  std::erase_if(types, [&](const TypeCount& type) { return format.holds(mesh, type.shape, type.vertices); });
-  // the message names a type of this dimension: lower types may be left out
-  const int highest = highest_dimension_of(types);
-  for (const TypeCount& type : types) {
-    if (dimension(type.shape) < highest) continue;
-    return fmt::format("{} cannot hold a cell of type {}", format.name, type_name(type.shape, type.vertices));
-  }
-  return format.conflict == nullptr ? "" : format.conflict(mesh);
-}
-
-std::string advice_on_formats(const Mesh& mesh) {
-  std::vector<std::string_view> names;
-  for (const Format& format : all_formats()) {
-    if (fault_of_cells(mesh, format).empty()) names.push_back(format.extensions.front());
-  }
-  if (names.empty()) return "no format that meshorder writes holds all of its cells";
-  const std::string_view last = names.back();
-  names.pop_back();
-  return fmt::format("write {}{}{}", join(names), names.empty() ? "" : " or ", last);
-}
-
-void require_held_cells(const Mesh& mesh, const std::vector<Index>& kept, const FilePath& path,
-                        const Format& format) {
+std::vector<Index> cells_to_write(const Mesh& mesh, const FilePath& path, const Format& format, bool strict,
+                                  Notes& notes) {
+  const std::vector<TypeCount> types = counted_types(mesh);
+  std::vector<Index> kept = strict ? all_cells(mesh) : cells_for(mesh, types, format, notes);
   std::string fault;
   if (index_size(kept) == mesh.cell_count()) {
-    fault = fault_of_cells(mesh, format);
+    fault = fault_of_cells(mesh, types, format);
   } else if (format.conflict != nullptr) {  // the format holds the type of each kept cell
     Mesh part = mesh;
     Notes ignored;
     keep_cells_at(part, kept, ignored);
-    fault = fault_of_cells(part, format);
+    fault = fault_of_cells(part, counted_types(part), format);
   }
-  if (!fault.empty()) throw InputError(path.string(), fault, advice_on_formats(mesh));
+  if (!fault.empty()) throw InputError(path.string(), fault, advice_on_formats(mesh, types));
+  return kept;
+}
+
+std::vector<Index> keep_dimension(Mesh& mesh, int wanted, Notes& notes) {
+  constexpr std::array<std::string_view, 4> kNames{"points", "curves", "surfaces", "volumes"};
+  std::vector<Index> kept = all_cells(mesh);
+  if (wanted < 0) return kept;
+  std::erase_if(kept, [&](Index c) { return dimension(mesh.cells.shapes[c]) != wanted; });
+  if (kept.empty())
+    throw InvalidArgument(fmt::format("the mesh has no {}", kNames[static_cast<std::size_t>(wanted)]));
+  keep_cells_at(mesh, kept, notes);
+  return kept;
 }
 
 inline namespace v0_3 {
 
 std::vector<Index> keep_cells(Mesh& mesh, const KeepOptions& options) {
-  constexpr std::array<std::string_view, 4> kNames{"points", "curves", "surfaces", "volumes"};
   if (options.dimension < -1 || options.dimension > 3) {
     throw InvalidArgument(
         fmt::format("keep_cells: the dimension is {}; it must be 0 to 3, or −1 for all", options.dimension));
   }
   check_mesh(mesh);
   const Format* const format = options.format.empty() ? nullptr : &format_named(options.format);
-  std::vector<Index> kept = all_cells(mesh);
   Notes notes;
-  if (options.dimension >= 0) {
-    std::erase_if(kept, [&](Index c) { return dimension(mesh.cells.shapes[c]) != options.dimension; });
-    if (kept.empty()) {
-      throw InvalidArgument(
-          fmt::format("the mesh has no {}", kNames[static_cast<std::size_t>(options.dimension)]));
-    }
-    keep_cells_at(mesh, kept, notes);
-  }
+  std::vector<Index> kept = keep_dimension(mesh, options.dimension, notes);
   if (format != nullptr) {
-    const std::vector<Index> held = cells_for(mesh, *format, notes);
+    const std::vector<Index> held = cells_for(mesh, counted_types(mesh), *format, notes);
     keep_cells_at(mesh, held, notes);
     std::vector<Index> positions;
     positions.reserve(held.size());

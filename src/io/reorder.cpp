@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -115,46 +114,52 @@ void check_holds_ids(const Format& format, Ids ids) {
       fmt::format("reorder: {} numbers points and cells by position; ids cannot be kept", format.name));
 }
 
+Permutation move_in_file(Mesh& mesh, const Permutation& vertices, Permutation cells, const Format* to,
+                         const std::optional<Permutation>& arranged, Ids ids) {
+  move_with_ids(mesh, vertices, cells, ids);
+  if (arranged) cells = arranged->then(cells);
+  if (to != nullptr && to->settle_cells != nullptr) cells = cells.then(to->settle_cells(mesh));
+  return cells;
+}
+
 void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells,
                       Ids ids) {
   const std::optional<Permutation> arranged = arrange_cells(mesh, to);
-  apply_reordering(mesh, vertices, arranged ? arranged->inverse().then(cells) : cells, ids);
-  if (to.settle_cells != nullptr) (void)to.settle_cells(mesh);
+  (void)move_in_file(mesh, vertices, arranged ? arranged->inverse().then(cells) : cells, &to, {}, ids);
 }
 
 void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells) {
-  if (mesh.format == to.key()) {
-    apply_reordering(mesh, vertices.inverse(), cells.inverse());
-  } else {
-    restore_cells(mesh, cells, {});  // the old order may mix cells that this format groups
-    apply_reordering(mesh, vertices.inverse(), Permutation::identity(mesh.cell_count()));
-  }
-  if (to.settle_cells != nullptr) (void)to.settle_cells(mesh);
+  const bool is_of_format = mesh.format == to.key();
+  if (!is_of_format) restore_cells(mesh, cells, {});  // the old order may mix cells that this format groups
+  (void)move_in_file(mesh, vertices.inverse(),
+                     is_of_format ? cells.inverse() : Permutation::identity(mesh.cell_count()), &to, {},
+                     Ids::renumber);
 }
 
-MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph> graph,
-                  const std::function<void(const CsrGraph&, const Permutation&)>& ordered) {
+inline namespace v0_3 {
+
+MeshOrder reorder(Mesh& mesh, const ReorderOptions& options) {
+  if (options.order.check != Check::none) in_arena(options.order.run, [&] { check_mesh(mesh); });
   return in_call(options.order.run, [&] {
-    if (!options.format.empty()) check_holds_ids(format_named(options.format), options.ids);
     const std::vector<Index> blocks = mesh.cell_blocks;
     std::optional<Permutation> arranged;
-    if (!options.format.empty()) arranged = arrange_cells(mesh, format_named(options.format));
+    if (!options.format.empty()) {
+      const Format& to = format_named(options.format);
+      check_holds_ids(to, options.ids);
+      arranged = arrange_cells(mesh, to);
+    }
     try {
-      if (!graph) graph = vertex_graph(mesh);
       ReorderOptions of_arranged = options;
       std::vector<std::int64_t> groups;
       if (arranged && options.order.cell_groups.size() == mesh.cells.shapes.size()) {
         groups = in_new_order(options.order.cell_groups, *arranged);
         of_arranged.order.cell_groups = groups;
       }
-      MeshOrder order = compute_order_in_file(mesh, *graph, of_arranged);
-      const Format* const to = format_to_write(mesh, options.format);
-      if (ordered) ordered(*graph, order.vertices.permutation);
-      graph.reset();  // frees memory for the moved arrays
-      move_with_ids(mesh, order.vertices.permutation, order.cells.permutation, options.ids);
-      if (arranged) order.cells.permutation = arranged->then(order.cells.permutation);
-      if (to != nullptr && to->settle_cells != nullptr)
-        order.cells.permutation = order.cells.permutation.then(to->settle_cells(mesh));
+      // the graph is freed before the arrays move
+      MeshOrder order = compute_order_in_file(mesh, vertex_graph(mesh), of_arranged);
+      order.cells.permutation =
+          move_in_file(mesh, order.vertices.permutation, std::move(order.cells.permutation),
+                       format_to_write(mesh, options.format), arranged, options.ids);
       return order;
     } catch (...) {
       if (arranged) restore_cells(mesh, *arranged, {});
@@ -162,13 +167,6 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGr
       throw;
     }
   });
-}
-
-inline namespace v0_3 {
-
-MeshOrder reorder(Mesh& mesh, const ReorderOptions& options) {
-  if (options.order.check != Check::none) in_arena(options.order.run, [&] { check_mesh(mesh); });
-  return reorder(mesh, options, {}, {});
 }
 
 void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids) {
