@@ -48,6 +48,7 @@ void plan_blocks(Planning& planning, bool is_own) {
   const CellDivision division = divide(planning.mesh);
   using Key = std::tuple<std::int64_t, Shape, int>;
   std::map<Key, const BlockRecord*> records;
+  std::set<const BlockRecord*> with_elements;
   std::set<std::int64_t> ids;
   for (const BlockRecord& record : planning.metadata.blocks) {
     if (record.nodes > 0) records.emplace(Key{record.label, record.shape, record.nodes}, &record);
@@ -64,6 +65,7 @@ void plan_blocks(Planning& planning, bool is_own) {
       if (record != records.end()) {
         plan.record = record->second;
         plan.id = plan.record->id;
+        with_elements.insert(plan.record);
         records.erase(record);
       } else {
         const bool is_free =
@@ -86,9 +88,7 @@ void plan_blocks(Planning& planning, bool is_own) {
   // blocks of the file that have no elements stay before the next block that has elements
   std::size_t next = 0;
   for (const BlockRecord& record : planning.metadata.blocks) {
-    const bool is_there = std::any_of(found.begin(), found.end(),
-                                      [&](const BlockPlan& plan) { return plan.record == &record; });
-    if (is_there) {
+    if (with_elements.contains(&record)) {
       while (next < found.size() && found[next].record != &record) planning.blocks.push_back(found[next++]);
       if (next < found.size()) planning.blocks.push_back(found[next++]);
     } else {
