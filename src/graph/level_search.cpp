@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "graph/level_search.hpp"
 
+#include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "graph/row_access.hpp"
 
@@ -9,13 +10,18 @@
 
 namespace meshorder {
 
-Index LevelSearch::run(Index start, std::span<Index> places, Arrange arrange) {
+LevelSearch::LevelSearch(GraphRef graph) : graph_(graph) {
+  reserve_large(place_of_, static_cast<std::size_t>(graph.size()));
+  place_of_.resize(graph.size(), kNotFound);
+}
+
+Index LevelSearch::run(Index start, std::span<Index> places, Arrange arrange, Index first) {
   constexpr Index kToShare = 2048;  // least size of a level for which other threads are started
   level_start_.clear();
-  places[0] = start;
-  found_by_[start] = -1;  // before all places
-  Index found = 1;
-  for (Index begin = 0; begin < found;) {
+  places[first] = start;
+  place_of_[start] = first;
+  Index found = first + 1;
+  for (Index begin = first; begin < found;) {
     level_start_.push_back(begin);
     const Index end = found;
     found = end - begin >= kToShare && thread_count() > 1
@@ -28,28 +34,36 @@ Index LevelSearch::run(Index start, std::span<Index> places, Arrange arrange) {
 }
 
 void LevelSearch::forget(Index first, Index end) {
-  std::fill(found_by_.begin() + first, found_by_.begin() + end, kNobody);
+  constexpr Offset kAtOnce = 1 << 18;
+  for_each_range(end - first, kAtOnce, [&](Offset from, Offset to) {
+    std::fill(place_of_.begin() + first + from, place_of_.begin() + first + to, kNotFound);
+  });
 }
 
-/// Writes every neighbour to the end of `places`, and moves the end only for new ones. This takes no branch:
-/// a processor cannot predict whether a vertex has been found before.
 Index LevelSearch::find_next_level(std::span<Index> places, Index begin, Index end, Arrange arrange) {
   Index found = end;
   for (Index k = begin; k < end; ++k) {
     poll_in_loop(k);
-    prefetch_row(graph_, places.first(static_cast<std::size_t>(found)), k);
+    prefetch_row(graph_, places.first(static_cast<std::size_t>(found)), k, place_of_.data());
     const Index first = found;
-    for (const Index u : graph_[places[k]]) {
-      places[found] = u;
-      const bool is_new = found_by_[u] == kNobody;
-      found_by_[u] = is_new ? k : found_by_[u];
-      found += is_new ? 1 : 0;
-    }
-    if (arrange != nullptr && found - first > 1) arrange(graph_, places.subspan(first, found - first));
+    for_each_below(graph_[places[k]], place_of_, 0, [&](Index u) {
+      place_of_[u] = found;
+      places[found++] = u;
+    });
+    if (arrange != nullptr && found - first > 1) arrange_found(places, first, found, arrange);
   }
   return found;
 }
 
+void LevelSearch::arrange_found(std::span<Index> places, Index first, Index end, Arrange arrange) {
+  arrange(graph_, places.subspan(first, end - first));
+  for (Index k = first; k < end; ++k) place_of_[places[k]] = k;
+}
+
+/// While threads read the rows of a level, `place_of_` holds a mark for each vertex that they find: the first
+/// row that has the vertex gives the largest mark, below 0. If two threads mark a vertex at once, the mark
+/// that is written later stays, and the vertex is among the findings of both; then the largest mark is
+/// restored. An atomic exchange would make the processor wait for one vertex at a time.
 Index LevelSearch::find_next_level_together(std::span<Index> places, Index begin, Index end,
                                             Arrange arrange) {
   constexpr Index kAtOnce = 256;  // vertices that a thread takes together
@@ -60,30 +74,38 @@ Index LevelSearch::find_next_level_together(std::span<Index> places, Index begin
     std::vector<Finding>& own = findings_[chunk];
     own.clear();
     for (Index k = begin + from; k < begin + to; ++k) {
-      prefetch_row(graph_, found_before, k);
-      for (const Index u : graph_[places[k]]) {
-        const std::atomic_ref<Index> by(found_by_[u]);
-        Index other = by.load(std::memory_order_relaxed);
-        while (k < other && !by.compare_exchange_weak(other, k, std::memory_order_relaxed)) {
-        }
-        if (k < other) own.push_back({u, k});
+      prefetch_row(graph_, found_before, k, place_of_.data());
+      const Index mark = begin - k - 1;
+      for_each_below(graph_[places[k]], place_of_, mark, [&](Index u) {
+        std::atomic_ref(place_of_[u]).store(mark, std::memory_order_relaxed);
+        own.push_back({u, mark});
+      });
+    }
+  });
+  for_each_chunk(chunks, 1, [&](Index chunk, Index, Index) {
+    for (const Finding& one : findings_[chunk]) {
+      const std::atomic_ref<Index> place(place_of_[one.vertex]);
+      Index other = place.load(std::memory_order_relaxed);
+      while (other < one.mark && !place.compare_exchange_weak(other, one.mark, std::memory_order_relaxed)) {
       }
     }
   });
   for_each_chunk(chunks, 1, [&](Index chunk, Index, Index) {
-    std::erase_if(findings_[chunk], [&](const Finding& one) { return found_by_[one.vertex] != one.by; });
+    std::erase_if(findings_[chunk], [&](const Finding& one) { return place_of_[one.vertex] != one.mark; });
   });
   std::vector<Index> first(static_cast<std::size_t>(chunks) + 1, end);
   for (Index c = 0; c < chunks; ++c) first[c + 1] = first[c] + index_size(findings_[c]);
   for_each_chunk(chunks, 1, [&](Index chunk, Index, Index) {
     const std::vector<Finding>& own = findings_[chunk];
-    const std::span<Index> to = places.subspan(first[chunk], own.size());
-    std::ranges::transform(own, to.begin(), &Finding::vertex);
+    for (Index k = 0; k < index_size(own); ++k) {
+      places[first[chunk] + k] = own[k].vertex;
+      place_of_[own[k].vertex] = first[chunk] + k;
+    }
     if (arrange == nullptr) return;
-    for (std::size_t k = 0; k < own.size();) {
-      const std::size_t begin_of_run = k;
-      while (k < own.size() && own[k].by == own[begin_of_run].by) ++k;
-      if (k - begin_of_run > 1) arrange(graph_, to.subspan(begin_of_run, k - begin_of_run));
+    for (Index k = 0; k < index_size(own);) {
+      const Index begin_of_run = k;
+      while (k < index_size(own) && own[k].mark == own[begin_of_run].mark) ++k;
+      if (k - begin_of_run > 1) arrange_found(places, first[chunk] + begin_of_run, first[chunk] + k, arrange);
     }
   });
   return first.back();

@@ -3,25 +3,60 @@
 
 #include "graph/csr_graph.hpp"
 
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cstdint>
 #include <span>
 
 namespace meshorder {
 
 // Loops over vertices visit rows anywhere in memory and search them; the results are unpredictable.
 // These functions prefetch rows a few steps ahead, and search without branches.
+//
+// GCC 12 drops calls of functions that only prefetch, as code without effect, unless they are inlined early.
 
 /// Prefetches the first two cache lines of a row, which hold at least 17 entries.
-inline void prefetch_entries(const Index* row) {
+[[gnu::always_inline]] inline void prefetch_entries(const Index* row) {
   constexpr Offset kLine = 64 / sizeof(Index);
   __builtin_prefetch(row);
   __builtin_prefetch(row + kLine);
 }
 
-/// Prefetches the row of the vertex that comes a few places after `k` in the order.
-inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k) {
-  constexpr Index kAhead = 8;
-  if (k + kAhead < index_size(order) && !graph.neighbours.empty()) {
-    prefetch_entries(graph.neighbours.data() + graph.offsets[order[k + kAhead]]);
+/// Prefetches what a loop over vertices soon reads after the vertex at place `k` of the order: the offset of
+/// a row, then the row.
+[[gnu::always_inline]] inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k) {
+  constexpr Index kOffsetAhead = 48;
+  constexpr Index kRowAhead = 24;
+  const Index last = index_size(order) - 1;
+  __builtin_prefetch(graph.offsets.data() + order[k + std::min(kOffsetAhead, last - k)]);
+  prefetch_entries(graph.neighbours.data() + graph.offsets[order[k + std::min(kRowAhead, last - k)]]);
+}
+
+/// Like `prefetch_row`, and prefetches the numbers of the vertices in a row: `numbers[u]` of neighbours u.
+[[gnu::always_inline]] inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k,
+                                                const Index* numbers) {
+  constexpr Index kNumbersAhead = 6;
+  constexpr std::size_t kMost = 32;  // of a row; longer rows keep the processor busy by themselves
+  prefetch_row(graph, order, k);
+  const std::span<const Index> row = graph[order[k + std::min(kNumbersAhead, index_size(order) - 1 - k)]];
+  for (const Index u : row.first(std::min(row.size(), kMost))) __builtin_prefetch(numbers + u);
+}
+
+/// Calls `visit(u)` for the entries u of a row with `numbers[u] < limit`, in their order. Compares many
+/// entries before it visits any: a processor cannot predict which ones are visited. Other threads may write
+/// numbers.
+template <class Visit>
+void for_each_below(std::span<const Index> row, std::span<Index> numbers, Index limit, const Visit& visit) {
+  constexpr std::size_t kAtOnce = 32;
+  for (; !row.empty(); row = row.subspan(std::min(row.size(), kAtOnce))) {
+    const std::span<const Index> some = row.first(std::min(row.size(), kAtOnce));
+    std::uint32_t below = 0;  // a bit for each entry
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const Index number = std::atomic_ref(numbers[some[i]]).load(std::memory_order_relaxed);
+      below |= std::uint32_t{number < limit} << i;
+    }
+    for (; below != 0; below &= below - 1) visit(some[std::size_t(std::countr_zero(below))]);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "graph/row_access.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -81,13 +82,21 @@ std::vector<std::vector<Index>> connected_components(GraphRef graph) {
 
 namespace {
 
+/// Returns an array whose entries must all be written before they are read. The system clears a page when a
+/// thread first writes to it.
+std::unique_ptr<Index[]> unfilled_array(std::size_t size) {
+  std::unique_ptr<Index[]> array = std::make_unique_for_overwrite<Index[]>(size);
+  ask_for_large_pages(array.get(), size * sizeof(Index));
+  return array;
+}
+
 /// Reads each row once: copies it while the search visits it.
 BreadthFirstCopy copy_in_one_pass(GraphRef graph) {
   const Index n = graph.size();
   BreadthFirstCopy copy;
   reserve_large(copy.offsets, std::size_t(n) + 1);
   copy.offsets.push_back(0);
-  resize_large(copy.neighbours, graph.neighbours.size());
+  copy.neighbours = unfilled_array(graph.neighbours.size());
   resize_large(copy.old_numbers, std::size_t(n) + 1);
   std::vector<Index> number;
   reserve_large(number, std::size_t(n));
@@ -108,7 +117,7 @@ BreadthFirstCopy copy_in_one_pass(GraphRef graph) {
         level_end = found;
         ++component.depth;
       }
-      prefetch_row(graph, std::span(copy.old_numbers).first(std::size_t(found)), k);
+      prefetch_row(graph, std::span(copy.old_numbers).first(std::size_t(found)), k, number.data());
       for (const Index u : graph[copy.old_numbers[k]]) {
         const bool is_new = number[u] < 0;
         copy.old_numbers[found] = u;
@@ -129,37 +138,32 @@ BreadthFirstCopy copy_in_one_pass(GraphRef graph) {
 BreadthFirstCopy copy_on_threads(GraphRef graph) {
   const auto n = static_cast<std::size_t>(graph.size());
   BreadthFirstCopy copy;
-  resize_large(copy.old_numbers, n + 1);
+  resize_large(copy.old_numbers, n);
   LevelSearch search(graph);
   Index found = 0;
   for (Index v = 0; v < graph.size(); ++v) {
     poll_in_loop(v);
     if (search.has_found(v)) continue;
-    const Index end = found + search.run(v, std::span(copy.old_numbers).subspan(found));
+    const Index end = search.run(v, copy.old_numbers, nullptr, found);
     copy.components.push_back({.first = found,
                                .end = end,
-                               .last_level = found + search.level_start()[search.depth()],
+                               .last_level = search.level_start()[search.depth()],
                                .depth = search.depth()});
     found = end;
   }
-  copy.old_numbers.resize(n);
-  std::vector<Index> number;
-  resize_large(number, n);
   resize_large(copy.offsets, n + 1);
   constexpr Index kRowsAtOnce = 4096;
   for_each_chunk(graph.size(), kRowsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
-    for (Index k = begin; k < end; ++k) {
-      number[copy.old_numbers[k]] = k;
-      copy.offsets[k + 1] = graph.degree(copy.old_numbers[k]);
-    }
+    for (Index k = begin; k < end; ++k) copy.offsets[k + 1] = graph.degree(copy.old_numbers[k]);
   });
   std::partial_sum(copy.offsets.begin(), copy.offsets.end(), copy.offsets.begin());
-  resize_large(copy.neighbours, graph.neighbours.size());
+  copy.neighbours = unfilled_array(graph.neighbours.size());
+  const std::span<const Index> number = search.place_of();
   for_each_chunk(graph.size(), kRowsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
-      prefetch_row(graph, copy.old_numbers, k);
-      Offset place = copy.offsets[k];
-      for (const Index u : graph[copy.old_numbers[k]]) copy.neighbours[place++] = number[u];
+      prefetch_row(graph, copy.old_numbers, k, number.data());
+      Index* place = copy.neighbours.get() + copy.offsets[k];
+      for (const Index u : graph[copy.old_numbers[k]]) *place++ = number[u];
     }
   });
   return copy;
@@ -169,7 +173,8 @@ BreadthFirstCopy copy_on_threads(GraphRef graph) {
 
 BreadthFirstCopy breadth_first_copy(GraphRef graph) {
   constexpr Index kSmall = 1 << 15;
-  const bool is_shared = thread_count() > 1 && graph.size() >= kSmall;
+  constexpr Index kFew = 2;  // as many threads gain less than it costs to read each row twice
+  const bool is_shared = thread_count() > kFew && graph.size() >= kSmall;
   BreadthFirstCopy copy = is_shared ? copy_on_threads(graph) : copy_in_one_pass(graph);
   std::stable_sort(copy.components.begin(), copy.components.end(),
                    [](const auto& a, const auto& b) { return a.end - a.first > b.end - b.first; });
@@ -181,7 +186,8 @@ std::vector<Index> search_from_rim(const BreadthFirstCopy& copy, const BreadthFi
   const Index size = component.end - component.first;
   // begin with the order of the search that made the copy
   std::vector<Index> order = index_range(component.first, size);
-  std::vector<Index> next(static_cast<std::size_t>(size) + 1);
+  std::vector<Index> next;
+  resize_large(next, static_cast<std::size_t>(size));
   Index depth = component.depth;
   std::span<const Index> last_level = std::span(order).subspan(component.last_level - component.first);
   while (true) {
@@ -191,11 +197,9 @@ std::vector<Index> search_from_rim(const BreadthFirstCopy& copy, const BreadthFi
     search.run(candidate, next);
     if (search.depth() <= depth) break;
     depth = search.depth();
-    order.resize(next.size());
     order.swap(next);
     last_level = std::span(order).subspan(search.level_start()[depth], size - search.level_start()[depth]);
   }
-  order.resize(static_cast<std::size_t>(size));
   return order;
 }
 

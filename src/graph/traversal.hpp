@@ -4,6 +4,7 @@
 #include "graph/csr_graph.hpp"
 #include "graph/level_search.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace meshorder {
@@ -35,14 +36,14 @@ struct BreadthFirstCopy {
   };
 
   std::vector<Offset> offsets;
-  std::vector<Index> neighbours;
+  std::unique_ptr<Index[]> neighbours;
   std::vector<Index> old_numbers;     ///< the old number of each vertex
   std::vector<Component> components;  ///< sorted as by `connected_components`
 
-  [[nodiscard]] GraphRef graph() const { return {offsets, neighbours}; }
+  [[nodiscard]] GraphRef graph() const { return {offsets, {neighbours.get(), std::size_t(offsets.back())}}; }
 };
 
-/// Returns the breadth-first copy of a graph. On all threads. O(n + edges).
+/// Returns the breadth-first copy of a graph. On all threads if there are more than two. O(n + edges).
 BreadthFirstCopy breadth_first_copy(GraphRef graph);
 
 /// Returns the vertices of a component in breadth-first order from a vertex on the component's rim. Each

@@ -9,14 +9,15 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <limits>
 #include <numeric>
 #include <utility>
 
 namespace meshorder {
 namespace {
 
-constexpr Index kUnseen = -1;
-constexpr Index kFound = -2;    // seen, not numbered yet
+constexpr Index kUnseen = std::numeric_limits<Index>::min();
+constexpr Index kFound = -1;    // seen, not numbered yet
 constexpr Index kBatch = 256;   // vertices whose discoveries are sorted together
 constexpr Index kWave = 8;      // threads share the work if there are at least this many batches
 constexpr Index kDegrees = 64;  // larger degrees are rare; they are sorted as this degree
@@ -25,7 +26,8 @@ constexpr Index kDegrees = 64;  // larger degrees are rare; they are sorted as t
 class Search {
  public:
   explicit Search(GraphRef graph) : graph_(graph) {
-    numbering_.order.resize(graph.size());
+    resize_large(numbering_.order, graph.size());
+    reserve_large(numbering_.number, graph.size());
     numbering_.number.assign(graph.size(), kUnseen);
   }
 
@@ -79,12 +81,12 @@ void Search::go_through_batch() {
   std::vector<Index>& found = found_.front();
   found.clear();
   for (const Index end = std::min(tail_, head_ + kBatch); head_ < end; ++head_) {
-    prefetch_row(graph_, {numbering_.order.data(), numbering_.order.data() + tail_}, head_);
-    for (const Index u : graph_[numbering_.order[head_]]) {
-      if (numbering_.number[u] != kUnseen) continue;
+    prefetch_row(graph_, {numbering_.order.data(), numbering_.order.data() + tail_}, head_,
+                 numbering_.number.data());
+    for_each_below(graph_[numbering_.order[head_]], numbering_.number, kFound, [&](Index u) {
       numbering_.number[u] = kFound;
       found.push_back(u);
-    }
+    });
   }
   put_by_degree(found, tail_);
   tail_ += index_size(found);
@@ -118,18 +120,15 @@ void Search::go_through_wave(Index batches) {
 /// have the vertex among their claims (see `settle_claims`). An atomic exchange would make the processor wait
 /// for one vertex at a time.
 void Search::claim_neighbours(Index batch, Index begin, Index end) {
-  const std::span<const Index> order(numbering_.order.data() + head_, end);
+  const std::span<const Index> order(numbering_.order.data() + head_, tail_ - head_);
   claims_[batch].clear();
   for (Index k = begin; k < end; ++k) {
-    prefetch_row(graph_, order, k);
+    prefetch_row(graph_, order, k, numbering_.number.data());
     const Index mark = kFound - k;
-    for (const Index u : graph_[order[k]]) {
-      const std::atomic_ref<Index> number(numbering_.number[u]);
-      const Index found = number.load(std::memory_order_relaxed);
-      if (found != kUnseen && found >= mark) continue;
-      number.store(mark, std::memory_order_relaxed);
+    for_each_below(graph_[order[k]], numbering_.number, mark, [&](Index u) {
+      std::atomic_ref(numbering_.number[u]).store(mark, std::memory_order_relaxed);
       claims_[batch].emplace_back(u, mark);
-    }
+    });
   }
 }
 
@@ -177,7 +176,7 @@ Laplacian component_laplacian(GraphRef graph, std::span<const double> weights,
   if (!weights.empty()) result.weights.resize(result.offsets[n]);
   for_each_chunk(n, kRows, [&](Index, Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
-      prefetch_row(graph, vertices, k);
+      prefetch_row(graph, vertices, k, numbering.number.data());
       const Index v = vertices[k];
       std::transform(graph[v].begin(), graph[v].end(), result.neighbours.begin() + result.offsets[k],
                      [&](Index u) { return numbering.number[u]; });

@@ -51,8 +51,9 @@ std::vector<Index> searched(const CsrGraph& graph, Index start, LevelSearch::Arr
 /// The vertices that a search finds, in its order.
 std::vector<Index> found_by(LevelSearch& search, Index start, Index size,
                             LevelSearch::Arrange arrange = nullptr) {
-  std::vector<Index> places(size + 1);
+  std::vector<Index> places(size);
   places.resize(search.run(start, places, arrange));
+  for (Index k = 0; k < index_size(places); ++k) EXPECT_EQ(search.place_of()[places[k]], k);
   return places;
 }
 
@@ -83,6 +84,16 @@ TEST(LevelSearch, FindsAgainWhatItHasForgotten) {
   EXPECT_TRUE(search.has_found(30));
 }
 
+/// A vertex joined to `many` others, each of which is joined to the same `few`.
+CsrGraph crowded(Index many, Index few) {
+  std::vector<Edge> edges;
+  for (Index v = 1; v <= many; ++v) {
+    edges.push_back({0, v});
+    for (Index k = 0; k < few; ++k) edges.push_back({v, many + 1 + k});
+  }
+  return graph_from_edges(1 + many + few, edges);
+}
+
 TEST(LevelSearch, IsThatOfOneThreadOnAnyNumber) {
   const LevelSearch::Arrange backwards = [](GraphRef, std::span<Index> found) {
     std::ranges::reverse(found);
@@ -90,7 +101,8 @@ TEST(LevelSearch, IsThatOfOneThreadOnAnyNumber) {
   // levels of tens of thousands of vertices, whose neighbours lie in many chunks
   for (const CsrGraph& graph :
        {test::random_connected(60000, 200000, 3), test::grid(80, 80, 8),
-        test::disjoint_union({test::path(3), test::random_connected(20000, 50000, 4)})}) {
+        test::disjoint_union({test::path(3), test::random_connected(20000, 50000, 4)}), crowded(5000, 96),
+        crowded(30000, 1)}) {
     for (const LevelSearch::Arrange arrange : {LevelSearch::Arrange(nullptr), backwards}) {
       const std::vector<Index> expected = searched(graph, graph.size() - 5, arrange);
       for (const std::size_t threads : {1, 2, 3, 7}) {
@@ -103,6 +115,18 @@ TEST(LevelSearch, IsThatOfOneThreadOnAnyNumber) {
       }
     }
   }
+}
+
+TEST(LevelSearch, FillsPlacesFromAnyOn) {
+  const CsrGraph graph = test::disjoint_union({test::grid(6, 5), test::path(4)});
+  LevelSearch search(graph);
+  std::vector<Index> places(34);
+  EXPECT_EQ(search.run(31, places), 4);
+  EXPECT_EQ(search.run(0, places, nullptr, 4), 34);
+  EXPECT_EQ(std::vector<Index>(places.begin() + 4, places.end()), searched(graph, 0, nullptr));
+  EXPECT_EQ(search.level_start().front(), 4);
+  EXPECT_EQ(search.level_start().back(), 34);
+  for (Index k = 0; k < 34; ++k) EXPECT_EQ(search.place_of()[places[k]], k);
 }
 
 TEST(BreadthFirstCopy, IsTheSameOnAnyNumberOfThreads) {
@@ -118,7 +142,7 @@ TEST(BreadthFirstCopy, IsTheSameOnAnyNumberOfThreads) {
     const BreadthFirstCopy copy = arena.execute([&] { return breadth_first_copy(graph); });
     EXPECT_EQ(copy.old_numbers, expected.old_numbers);
     EXPECT_EQ(copy.offsets, expected.offsets);
-    EXPECT_EQ(copy.neighbours, expected.neighbours);
+    EXPECT_TRUE(std::ranges::equal(copy.graph().neighbours, expected.graph().neighbours));
     ASSERT_EQ(copy.components.size(), expected.components.size());
     for (std::size_t c = 0; c < copy.components.size(); ++c) {
       EXPECT_EQ(copy.components[c].first, expected.components[c].first);
@@ -161,7 +185,8 @@ Index found_from_zero(const CsrGraph& graph, const std::vector<Index>& names) {
   const BreadthFirstCopy copy = breadth_first_copy(renumbered(graph, names));
   LevelSearch search(copy.graph());
   const std::vector<Index> order = search_from_rim(copy, copy.components.front(), search);
-  EXPECT_EQ(order, searched({copy.offsets, copy.neighbours}, order.front(), nullptr));
+  EXPECT_EQ(order, searched({copy.offsets, {copy.graph().neighbours.begin(), copy.graph().neighbours.end()}},
+                            order.front(), nullptr));
   const Index name = copy.old_numbers[order.front()];
   return static_cast<Index>(std::find(names.begin(), names.end(), name) - names.begin());
 }
