@@ -3,7 +3,6 @@
 
 #include "base/memory.hpp"
 #include "base/stopwatch.hpp"
-#include "base/text.hpp"
 #include "io/npy.hpp"
 #include "io/stream/read_limits.hpp"
 #include "lab/fluid/fluid.hpp"
@@ -15,7 +14,6 @@
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cmath>
@@ -78,38 +76,34 @@ class Stepping {
 
   [[nodiscard]] const StepperReady& ready() const noexcept { return ready_; }
 
-  StepperTimes take(const StepperTurn& turn) {
+  RunRecord take(const StepperTurn& turn) {
     if (!turn.frames.empty() && !frames_) {
       frames_.emplace(turn.frames, simulation_.mesh.vertex_count());
       if (!turn.surfaces.empty()) surfaces_.emplace(turn.surfaces);
       add_frame();
     }
-    StepperTimes times;
+    RunRecord run;
     for (Index i = 0; i < turn.steps; ++i) {
       const Stopwatch stopwatch;
       const StepReport report = simulation_.body->step();
-      times.step_seconds.push_back(std::round(1e7 * stopwatch.seconds()) / 1e7);
+      run.step_seconds.push_back(std::round(1e7 * stopwatch.seconds()) / 1e7);
       ++step_;
-      add(report, times);
+      run.seconds += report.seconds;
+      run.cg_iterations += report.cg_iterations;
+      run.admm_iterations += report.admm_iterations;
+      run.contact_iterations += report.contact_iterations;
       for (const std::string& warning : report.warnings) {
         if (add_warning(warning, step_, warnings_))
-          times.warnings.push_back(fmt::format("step {}: {}", step_, warning));
+          run.warnings.push_back(fmt::format("step {}: {}", step_, warning));
       }
       if (frames_ && step_ % turn.frame_every == 0) add_frame();
     }
     if (frames_ && turn.last) frames_->commit();
     if (surfaces_ && turn.last) surfaces_->commit();
-    return times;
+    return run;
   }
 
  private:
-  static void add(const StepReport& report, StepperTimes& times) {
-    times.seconds += report.seconds;
-    times.cg_iterations += report.cg_iterations;
-    times.admm_iterations += report.admm_iterations;
-    times.contact_iterations += report.contact_iterations;
-  }
-
   void add_frame() {
     MotionState state = simulation_.body->state();
     move_embedded(embedded_, simulation_.mesh.points, state);
@@ -134,105 +128,12 @@ class Stepping {
   std::optional<SurfaceFile> surfaces_;  ///< of a fluid
 };
 
-/// Returns UTF-8 text unchanged, and the bytes of other text as numbers: a path may hold any bytes.
-nlohmann::json bytes_in_json(const std::string& text) {
-  if (is_utf8(text)) return text;
-  auto numbers = nlohmann::json::array();
-  for (const char c : text) numbers.push_back(static_cast<int>(static_cast<unsigned char>(c)));
-  return numbers;
-}
-
-std::string bytes_of(const nlohmann::json& message) {
-  if (message.is_string()) return message;
-  std::string text;
-  for (const int byte : message.get<std::vector<int>>()) text += static_cast<char>(byte);
-  return text;
-}
-
 /// Returns a message in one line; bytes that are no UTF-8 become U+FFFD.
 std::string line_of(const nlohmann::json& message) {
   return message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace
-
-nlohmann::json to_json(const StepperTask& task) {
-  return {{"scenario", bytes_in_json(task.scenario)},
-          {"mesh", bytes_in_json(task.mesh)},
-          {"vertex_order", bytes_in_json(task.vertex_order)},
-          {"cell_order", bytes_in_json(task.cell_order)},
-          {"processors", task.processors},
-          {"vertex_method", task.vertex_method},
-          {"element_method", task.element_method},
-          {"spacing", task.spacing}};
-}
-
-StepperTask stepper_task(const nlohmann::json& message) {
-  return {bytes_of(message.at("scenario")),
-          bytes_of(message.at("mesh")),
-          bytes_of(message.at("vertex_order")),
-          bytes_of(message.at("cell_order")),
-          message.at("processors").get<std::vector<int>>(),
-          message.at("vertex_method"),
-          message.at("element_method"),
-          message.at("spacing")};
-}
-
-nlohmann::json to_json(const StepperReady& ready) {
-  return {{"vertices", ready.vertices},         {"tetrahedra", ready.tetrahedra},
-          {"longest_side", ready.longest_side}, {"setup_seconds", ready.setup_seconds},
-          {"step_seconds", ready.step_seconds}, {"bytes", ready.bytes},
-          {"fingerprint", ready.fingerprint},   {"fixed_addresses", ready.fixed_addresses}};
-}
-
-StepperReady stepper_ready(const nlohmann::json& message) {
-  return {message.at("vertices"),      message.at("tetrahedra"),     message.at("longest_side"),
-          message.at("setup_seconds"), message.at("step_seconds"),   message.at("bytes"),
-          message.at("fingerprint"),   message.at("fixed_addresses")};
-}
-
-nlohmann::json to_json(const StepperTurn& turn) {
-  return {{"steps", turn.steps},
-          {"frames", bytes_in_json(turn.frames)},
-          {"frame_every", turn.frame_every},
-          {"last", turn.last},
-          {"surfaces", bytes_in_json(turn.surfaces)}};
-}
-
-StepperTurn stepper_turn(const nlohmann::json& message) {
-  return {message.at("steps"), bytes_of(message.at("frames")), message.at("frame_every"), message.at("last"),
-          bytes_of(message.at("surfaces"))};
-}
-
-nlohmann::json to_json(const StepperTimes& times) {
-  const StepReport::Seconds& s = times.seconds;
-  return {{"step_seconds", times.step_seconds},
-          {"seconds",
-           {{"total", s.total},
-            {"assembly", s.assembly},
-            {"solve", s.solve},
-            {"local", s.local},
-            {"global", s.global},
-            {"collision", s.collision},
-            {"triangulation", s.triangulation},
-            {"order", s.order},
-            {"motion", s.motion}}},
-          {"cg_iterations", times.cg_iterations},
-          {"admm_iterations", times.admm_iterations},
-          {"contact_iterations", times.contact_iterations},
-          {"warnings", times.warnings}};
-}
-
-StepperTimes stepper_times(const nlohmann::json& message) {
-  const nlohmann::json& s = message.at("seconds");
-  return {message.at("step_seconds").get<std::vector<double>>(),
-          {s.at("total"), s.at("assembly"), s.at("solve"), s.at("local"), s.at("global"), s.at("collision"),
-           s.at("triangulation"), s.at("order"), s.at("motion")},
-          message.at("cg_iterations"),
-          message.at("admm_iterations"),
-          message.at("contact_iterations"),
-          message.at("warnings").get<std::vector<std::string>>()};
-}
 
 void serve_steps(std::istream& questions, std::ostream& answers) {
   const auto answer = [&](const nlohmann::json& message) { answers << line_of(message) << std::endl; };
@@ -241,14 +142,14 @@ void serve_steps(std::istream& questions, std::ostream& answers) {
     for (std::string line; std::getline(questions, line);) {
       const nlohmann::json question = nlohmann::json::parse(line);
       if (stepping) {
-        answer(to_json(stepping->take(stepper_turn(question))));
+        answer(message_of(stepping->take(read_message<StepperTurn>(question))));
         continue;
       }
-      const StepperTask task = stepper_task(question);
+      const auto task = read_message<StepperTask>(question);
       if (!task.processors.empty() && !bind_to(task.processors))
         throw InputError("processors", "the threads cannot be bound to them", "give --no-pin");
       stepping.emplace(task);
-      answer(to_json(stepping->ready()));
+      answer(message_of(stepping->ready()));
     }
   } catch (const std::bad_alloc&) {
     answer({{"error", "out of memory"}});
@@ -276,10 +177,10 @@ std::vector<std::string> arguments_for(int threads) {
 
 Stepper::Stepper(const std::filesystem::path& program, int threads, const StepperTask& task)
     : name_(task.scenario), process_(program, arguments_for(threads), true) {
-  ready_ = stepper_ready(ask(to_json(task)));
+  ready_ = read_message<StepperReady>(ask(message_of(task)));
 }
 
-StepperTimes Stepper::take(const StepperTurn& turn) { return stepper_times(ask(to_json(turn))); }
+RunRecord Stepper::take(const StepperTurn& turn) { return read_message<RunRecord>(ask(message_of(turn))); }
 
 nlohmann::json Stepper::ask(const nlohmann::json& question) {
   process_.send(line_of(question));

@@ -2,15 +2,18 @@
 #pragma once
 
 #include "base/index.hpp"
-#include "lab/motion/integrator.hpp"
+#include "base/text.hpp"
+#include "lab/study/results_fields.hpp"
 #include "lab/support/process.hpp"
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <istream>
 #include <ostream>
 #include <string>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
 namespace meshorder {
@@ -52,26 +55,74 @@ struct StepperTurn {
   std::string surfaces = {};  ///< file for the surface of a fluid in the frames; empty: none
 };
 
-/// Timings and iteration counts of the steps of a turn.
-struct StepperTimes {
-  std::vector<double> step_seconds;  ///< of each step, without writing frames
-  StepReport::Seconds seconds;       ///< sums
-  Offset cg_iterations = 0;
-  Offset admm_iterations = 0;
-  Offset contact_iterations = 0;
-  std::vector<std::string> warnings;
-};
+template <>
+inline constexpr auto kFields<StepperTask> = std::tuple{Field{"scenario", &StepperTask::scenario},
+                                                        Field{"mesh", &StepperTask::mesh},
+                                                        Field{"vertex_order", &StepperTask::vertex_order},
+                                                        Field{"cell_order", &StepperTask::cell_order},
+                                                        Field{"processors", &StepperTask::processors},
+                                                        Field{"vertex_method", &StepperTask::vertex_method},
+                                                        Field{"element_method", &StepperTask::element_method},
+                                                        Field{"spacing", &StepperTask::spacing}};
 
-nlohmann::json to_json(const StepperTask& task);
-nlohmann::json to_json(const StepperReady& ready);
-nlohmann::json to_json(const StepperTurn& turn);
-nlohmann::json to_json(const StepperTimes& times);
+template <>
+inline constexpr auto kFields<StepperReady> =
+    std::tuple{Field{"vertices", &StepperReady::vertices},
+               Field{"tetrahedra", &StepperReady::tetrahedra},
+               Field{"longest_side", &StepperReady::longest_side},
+               Field{"setup_seconds", &StepperReady::setup_seconds},
+               Field{"step_seconds", &StepperReady::step_seconds},
+               Field{"bytes", &StepperReady::bytes},
+               Field{"fingerprint", &StepperReady::fingerprint},
+               Field{"fixed_addresses", &StepperReady::fixed_addresses}};
 
-// These functions throw nlohmann::json::exception for a message of another kind.
-StepperTask stepper_task(const nlohmann::json& message);
-StepperReady stepper_ready(const nlohmann::json& message);
-StepperTurn stepper_turn(const nlohmann::json& message);
-StepperTimes stepper_times(const nlohmann::json& message);
+template <>
+inline constexpr auto kFields<StepperTurn> =
+    std::tuple{Field{"steps", &StepperTurn::steps}, Field{"frames", &StepperTurn::frames},
+               Field{"frame_every", &StepperTurn::frame_every}, Field{"last", &StepperTurn::last},
+               Field{"surfaces", &StepperTurn::surfaces}};
+
+/// Returns a record as an object with its kFields. UTF-8 text stays text; the bytes of other text become
+/// numbers, since a path may hold any bytes.
+template <class Value>
+nlohmann::json message_of(const Value& value) {
+  if constexpr (Described<Value>) {
+    auto message = nlohmann::json::object();
+    const auto put = [&](const auto&... field) {
+      ((message[std::string(field.key)] = message_of(value.*field.member)), ...);
+    };
+    std::apply(put, kFields<Value>);
+    return message;
+  } else {
+    if constexpr (std::is_same_v<Value, std::string>) {
+      if (!is_utf8(value)) return std::vector<unsigned char>(value.begin(), value.end());
+    }
+    return value;
+  }
+}
+
+/// Returns the value that `message_of` wrote. Throws nlohmann::json::exception for another message.
+template <class Value>
+Value read_message(const nlohmann::json& message) {
+  if constexpr (Described<Value>) {
+    Value value;
+    const auto take = [&](const auto&... field) {
+      ((value.*field.member =
+            read_message<std::decay_t<decltype(value.*field.member)>>(message.at(std::string(field.key)))),
+       ...);
+    };
+    std::apply(take, kFields<Value>);
+    return value;
+  } else {
+    if constexpr (std::is_same_v<Value, std::string>) {
+      if (message.is_array()) {
+        const auto bytes = message.get<std::vector<unsigned char>>();
+        return {bytes.begin(), bytes.end()};
+      }
+    }
+    return message.get<Value>();
+  }
+}
 
 /// Serves a study over a pair of streams: reads a StepperTask, sets up the body, runs a warm-up step and
 /// undoes it; then simulates and times turn after turn until the input ends. An error is the last answer.
@@ -87,8 +138,9 @@ class Stepper {
 
   [[nodiscard]] const StepperReady& ready() const noexcept { return ready_; }
 
-  /// Runs the steps of a turn and waits for them. Throws Error with the process's message.
-  StepperTimes take(const StepperTurn& turn);
+  /// Runs the steps of a turn and waits for them. The record has neither the time at which the run began nor
+  /// the set-up and memory of the body. Throws Error with the process's message.
+  RunRecord take(const StepperTurn& turn);
 
  private:
   nlohmann::json ask(const nlohmann::json& question);

@@ -33,13 +33,13 @@ double available_bytes() {
   return std::numeric_limits<double>::max();
 }
 
-void add(const StepperTimes& times, RunRecord& run) {
-  run.step_seconds.insert(run.step_seconds.end(), times.step_seconds.begin(), times.step_seconds.end());
-  run.seconds += times.seconds;
-  run.cg_iterations += times.cg_iterations;
-  run.admm_iterations += times.admm_iterations;
-  run.contact_iterations += times.contact_iterations;
-  run.warnings.insert(run.warnings.end(), times.warnings.begin(), times.warnings.end());
+void add(const RunRecord& turn, RunRecord& run) {
+  run.step_seconds.insert(run.step_seconds.end(), turn.step_seconds.begin(), turn.step_seconds.end());
+  run.seconds += turn.seconds;
+  run.cg_iterations += turn.cg_iterations;
+  run.admm_iterations += turn.admm_iterations;
+  run.contact_iterations += turn.contact_iterations;
+  run.warnings.insert(run.warnings.end(), turn.warnings.begin(), turn.warnings.end());
 }
 
 /// Returns the groups of orders that are in memory together.

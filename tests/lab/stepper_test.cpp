@@ -33,15 +33,16 @@ std::vector<json> answers_to(const std::vector<json>& questions) {
 
 TEST(StepperMessages, HoldPathsOfAnyBytes) {
   const auto sent = [](const json& message) { return json::parse(message.dump()); };
-  const StepperTurn turn = stepper_turn(sent(to_json(StepperTurn{1, "\xff.npy", 1, true, "\xfe/é"})));
+  const StepperTurn turn =
+      read_message<StepperTurn>(sent(message_of(StepperTurn{1, "\xff.npy", 1, true, "\xfe/é"})));
   EXPECT_EQ(turn.frames, "\xff.npy");
   EXPECT_EQ(turn.surfaces, "\xfe/é");
-  const StepperTask task = stepper_task(sent(to_json(StepperTask{"\xf0",
-                                                                 "mesh\xff.vtu",
-                                                                 "\x80v",
-                                                                 "\x81"
-                                                                 "c",
-                                                                 {}})));
+  const StepperTask task = read_message<StepperTask>(sent(message_of(StepperTask{"\xf0",
+                                                                                 "mesh\xff.vtu",
+                                                                                 "\x80v",
+                                                                                 "\x81"
+                                                                                 "c",
+                                                                                 {}})));
   EXPECT_EQ(task.scenario, "\xf0");
   EXPECT_EQ(task.mesh, "mesh\xff.vtu");
   EXPECT_EQ(task.vertex_order, "\x80v");
@@ -63,14 +64,14 @@ class Steps : public testing::Test {
 
 TEST_F(Steps, AreThoseOfTheSimulation) {
   StepperTurn turn{3, file("motion.npy"), 2, false};
-  std::vector<json> questions{to_json(task()), to_json(turn)};
+  std::vector<json> questions{message_of(task()), message_of(turn)};
   turn.last = true;
-  questions.push_back(to_json(turn));
+  questions.push_back(message_of(turn));
   const std::vector<json> answers = answers_to(questions);
   ASSERT_EQ(answers.size(), 3U);
-  EXPECT_EQ(stepper_ready(answers[0]).vertices, mesh_.vertex_count());
-  EXPECT_DOUBLE_EQ(stepper_ready(answers[0]).longest_side, 10);  // the scenario's scale
-  const StepperTimes times = stepper_times(answers[2]);
+  EXPECT_EQ(read_message<StepperReady>(answers[0]).vertices, mesh_.vertex_count());
+  EXPECT_DOUBLE_EQ(read_message<StepperReady>(answers[0]).longest_side, 10);  // the scenario's scale
+  const auto times = read_message<RunRecord>(answers[2]);
   EXPECT_EQ(times.step_seconds.size(), 3U);
   EXPECT_GT(times.cg_iterations, 0);
   EXPECT_GT(times.seconds.solve, 0);
@@ -97,7 +98,7 @@ TEST_F(Steps, GiveTheirFramesInTheMeshsOwnOrder) {
   shuffled.vertex_order = file("v.npy");
   shuffled.cell_order = file("c.npy");
   for (const auto& [asked, name] : {std::pair(task(), "own.npy"), std::pair(shuffled, "shuffled.npy")})
-    ASSERT_EQ(answers_to({to_json(asked), to_json(StepperTurn{4, file(name), 1, true})}).size(), 2U);
+    ASSERT_EQ(answers_to({message_of(asked), message_of(StepperTurn{4, file(name), 1, true})}).size(), 2U);
   const Motion own = read_motion(file("own.npy"));
   EXPECT_LT(difference_of(read_motion(file("shuffled.npy")), own, 10).largest, 1e-6);
 }
@@ -111,15 +112,17 @@ TEST_F(Steps, SayWhatIsWrongAndEnd) {
   EXPECT_NE(complaint({{"nonsense", 1}}), "");
   StepperTask other = task();
   other.mesh = file("none.vtu");
-  EXPECT_NE(complaint(to_json(other)).find("none.vtu"), std::string::npos);
+  EXPECT_NE(complaint(message_of(other)).find("none.vtu"), std::string::npos);
   other = task();
   write_npy(std::vector<Index>{0, 1, 2}, file("short.npy"));
   other.vertex_order = file("short.npy");
-  EXPECT_NE(complaint(to_json(other)).find("maps 3 vertices"), std::string::npos);
+  EXPECT_NE(complaint(message_of(other)).find("maps 3 vertices"), std::string::npos);
 }
 
 TEST_F(Steps, FindTheSameMeshByItsFingerprint) {
-  const auto fingerprint = [&] { return stepper_ready(answers_to({to_json(task())})[0]).fingerprint; };
+  const auto fingerprint = [&] {
+    return read_message<StepperReady>(answers_to({message_of(task())})[0]).fingerprint;
+  };
   const std::string before = fingerprint();
   EXPECT_EQ(fingerprint(), before);
   mesh_.points[0][0] += 1e-9;
