@@ -14,7 +14,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 
 #include <limits>
 #include <map>
@@ -186,30 +185,12 @@ TEST(CholeskyFactor, GivesTheSameBitsOnAnyNumberOfThreads) {
   expect_same_bits<float>();
 }
 
-TEST(CholeskyFactor, IsSharedByThreadsAndItsCopies) {
-  const SparseMatrix matrix = large_matrix();
-  const CholeskyFactor<double> factor(matrix);
-  std::vector<std::vector<double>> b, x, expected;
-  for (Index i = 0; i < 6; ++i) {
-    b.push_back(random_vertices<double>(matrix.size(), static_cast<std::uint64_t>(i)));
-    expected.emplace_back(b.back().size());
-    x.emplace_back(b.back().size());
-    factor.solve(b.back(), expected.back());
-  }
-  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 4);
-  tbb::parallel_for(std::size_t{0}, b.size(), [&](std::size_t i) {
-    const CholeskyFactor<double> copy = factor;  // NOLINT(performance-unnecessary-copy-initialization)
-    copy.solve(b[i], x[i]);
-  });
-  EXPECT_EQ(x, expected);
-}
-
 /// Compares the full solve with that of the reach, for a right-hand side that is 0 outside the reach. The
 /// solve of the reach must not read or write outside it.
 template <class Real>
 void expect_full_solution(const SparseMatrix& matrix, const std::vector<Index>& vertices, double tolerance) {
   const CholeskyFactor<Real> factor(matrix);
-  const typename CholeskyFactor<Real>::Reach reach = factor.reach_of(vertices);
+  const FactorReach reach = factor.reach_of(vertices);
   const std::vector<Real> some = random_vertices<Real>(matrix.size());
   const Real unread = std::numeric_limits<Real>::quiet_NaN();
   const Real unwritten = 99;

@@ -141,7 +141,7 @@ class ContactOperator final : public ForceOperator {
   std::vector<Index> place_of_;       ///< of all vertices; −1 except within take_submatrix
   std::vector<double> diagonal_;      ///< of A
   ContactRows rows_;
-  typename CholeskyFactor<Real>::Reach reach_;
+  FactorReach reach_;
   std::vector<Offset> offsets_;  ///< of the part of A at contacts' vertices
   std::vector<Index> columns_;
   std::vector<double> values_;

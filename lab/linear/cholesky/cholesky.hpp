@@ -1,10 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "kernels/aligned.hpp"
+#include "base/index.hpp"
 #include "lab/linear/cholesky/ldl.hpp"
+#include "lab/linear/cholesky/panel_factor.hpp"
 
-#include <memory>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -22,15 +23,13 @@ struct FactorReach {
 /// coordinates of all vertices at once. The factor has a fill-reducing order of its own (nested dissection);
 /// vectors are in the order of the matrix. `Real` is the precision of the factor and of vectors, double or
 /// float; the factor is computed in double. Solves run on all threads, with the same bits for any number of
-/// threads. Threads may share a factor.
+/// threads. They use scratch memory of the factor, so two threads must not call them at a time.
 template <class Real>
 class CholeskyFactor {
  public:
-  using Reach = FactorReach;
-
   /// Reads the upper half of the matrix. Throws InvalidArgument, naming a row, if it is not positive definite
   /// or singular to rounding. For meshes O(n^3/2) operations in the plane and O(n²) in space.
-  explicit CholeskyFactor(const SparseMatrix& matrix);
+  explicit CholeskyFactor(const SparseMatrix& matrix) : CholeskyFactor(factor_ldl(matrix)) {}
 
   /// Computes x = A⁻¹ b. Both vectors have kPaddedStride numbers for each vertex (see padded_positions), the
   /// last of which is 0. b and x may be the same array, but must not overlap otherwise. Throws
@@ -40,22 +39,28 @@ class CholeskyFactor {
   /// Returns the part of the factor needed for right-hand sides that are 0 except at these vertices, if
   /// solutions are wanted only there. The vertices may be in any order and repeat. Throws InvalidArgument for
   /// a vertex that does not exist. O(panels reached, times the logarithm of their number).
-  [[nodiscard]] Reach reach_of(std::span<const Index> vertices) const;
+  [[nodiscard]] FactorReach reach_of(std::span<const Index> vertices) const;
 
   /// Computes the same solution at the vertices given to reach_of; b must be 0 at all other vertices. b and x
   /// have their full size, but only the numbers of these vertices are read and written. b and x may be the
   /// same array. O(reach.entries).
-  void solve(const Reach& reach, std::span<const Real> b, std::span<Real> x) const;
+  void solve(const FactorReach& reach, std::span<const Real> b, std::span<Real> x) const;
 
-  [[nodiscard]] Index size() const noexcept;
+  [[nodiscard]] Index size() const noexcept { return panels_.size(); }
   /// Returns the number of entries of the factor that its pattern allows, diagonal included.
-  [[nodiscard]] Offset entries() const noexcept;
+  [[nodiscard]] Offset entries() const noexcept { return entries_; }
   /// Returns the memory held, in bytes.
-  [[nodiscard]] std::size_t bytes() const;
+  [[nodiscard]] std::size_t bytes() const { return panels_.bytes(); }
 
  private:
-  class Factor;
-  std::shared_ptr<const Factor> factor_;
+  explicit CholeskyFactor(const Ldl& ldl);
+  void check_sizes(std::span<const Real> b, std::span<Real> x) const;
+
+  PanelFactor<Real> panels_;
+  Offset entries_;
+  mutable AlignedVector<Real> work_;   ///< kPaddedStride numbers for each place
+  mutable std::vector<Index> marked_;  ///< for each panel, the last search that met it
+  mutable Index searches_ = 0;
 };
 
 }  // namespace meshorder

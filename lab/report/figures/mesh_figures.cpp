@@ -159,10 +159,10 @@ std::string key(const StudyResults& results, const MeshRecord& mesh) {
 }
 
 /// Edges of a panel in pixels from the picture's upper left corner.
-struct Panel {
+struct SpanPanel {
   int left, right, top, bottom;
 };
-std::string place(const Panel& panel, double width, double height) {
+std::string place(const SpanPanel& panel, double width, double height) {
   return fmt::format(
       "set lmargin at screen {}\nset rmargin at screen {}\nset tmargin at screen {}\n"
       "set bmargin at screen {}\n",
