@@ -102,7 +102,6 @@ TEST(SelfContact, LeadsOutThroughTheNearestFace) {
   EXPECT_GE(down, 9);
 
   const Penetration penetration = finder.penetration(positions);
-  EXPECT_NEAR(penetration.into_itself, kDepth, 1e-12);
   EXPECT_EQ(penetration.vertices_in_itself, index_size(contacts));
   EXPECT_EQ(penetration.into_obstacles, 0.0);
 }
@@ -137,7 +136,6 @@ TEST(SelfContact, IsThatOfTheDeepestTetrahedronByAllTriangles) {
     search.find(positions, inside);
     std::vector<Contact> contacts;
     finder.find(positions, positions, contacts);
-    double deepest = 0.0;
     std::size_t i = 0;
     for (std::size_t k = 0; k < inside.size(); ++i) {
       const Index v = inside[k].vertex;
@@ -149,7 +147,6 @@ TEST(SelfContact, IsThatOfTheDeepestTetrahedronByAllTriangles) {
           place =
               plus_scaled(place, inside[k].weights[a], body.points[search.corners(inside[k].tetrahedron)[a]]);
         test::Surface others{body.points, surface.triangles};
-        deepest = std::max(deepest, test::distance_to_surface(others, place));
         std::erase_if(others.triangles,
                       [&](const auto& t) { return std::find(t.begin(), t.end(), v) != t.end(); });
         depth = std::max(depth, test::distance_to_surface(others, place));
@@ -174,7 +171,6 @@ TEST(SelfContact, IsThatOfTheDeepestTetrahedronByAllTriangles) {
       EXPECT_EQ(contacts[i].offset, 0.0);
     }
     EXPECT_EQ(i, contacts.size());
-    EXPECT_NEAR(finder.penetration(positions).into_itself, deepest, 1e-12);
     EXPECT_EQ(finder.penetration(positions).vertices_in_itself, index_size(contacts));
   }
   EXPECT_GT(several, 5);

@@ -3,14 +3,10 @@
 
 #include "base/parallel.hpp"
 #include "kernels/positions.hpp"
-#include "lab/contact/geometry/box_tree.hpp"
 #include "lab/contact/search/body_surface.hpp"
-#include "lab/contact/search/self_contact.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
-#include <initializer_list>
-#include <optional>
 #include <string>
 
 namespace meshorder {
@@ -58,118 +54,90 @@ void visit_within_reach(const Obstacle& obstacle, double reach, std::span<const 
 
 }  // namespace
 
-struct ContactFinder::State {
-  ContactOptions options;
-  Index vertex_count = 0;
-  std::vector<Index> surface;  ///< vertices of the surface, in clusters
-  std::optional<SelfContact> itself;
-  /// Vertices of the surface that are searched together.
-  struct Cluster {
-    std::vector<Index> near;  ///< obstacles
-    std::vector<Contact> found;
-    double deepest = 0.0;
-  };
-  std::vector<Cluster> clusters;
-  std::vector<Box> boxes;  ///< around clusters
-
-  /// Finds the obstacles near each cluster, whose vertices are at any of the positions in `places`.
-  void find_near(std::initializer_list<std::span<const double>> places, double reach) {
-    for_each_chunk(index_size(surface), kInCluster, [&](Index c, Index begin, Index end) {
-      clusters[c].near.clear();
-      boxes[c] = {};
-      for (const std::span<const double> place : places) {
-        for (Index i = begin; i < end; ++i) boxes[c].include(point_of(place, surface[i]));
-      }
-    });
-    for (Index o = 0; o < index_size(options.obstacles); ++o) {
-      visit_within_reach(*options.obstacles[o].obstacle, reach, boxes, 0, index_size(clusters),
-                         [&](Index c) { clusters[c].near.push_back(o); });
+void ContactFinder::find_near(std::initializer_list<std::span<const double>> places, double reach) {
+  for_each_chunk(index_size(surface_), kInCluster, [&](Index c, Index begin, Index end) {
+    clusters_[c].near.clear();
+    boxes_[c] = {};
+    for (const std::span<const double> place : places) {
+      for (Index i = begin; i < end; ++i) boxes_[c].include(point_of(place, surface_[i]));
     }
+  });
+  for (Index o = 0; o < index_size(options_.obstacles); ++o) {
+    visit_within_reach(*options_.obstacles[o].obstacle, reach, boxes_, 0, index_size(clusters_),
+                       [&](Index c) { clusters_[c].near.push_back(o); });
   }
+}
 
-  void check(std::span<const double> positions, const char* function) const {
-    if (positions.size() != static_cast<std::size_t>(kPaddedStride) * static_cast<std::size_t>(vertex_count))
-      throw InvalidArgument(std::string(function) + ": positions must be those of all points at rest");
-  }
-};
+void ContactFinder::check(std::span<const double> positions, const char* function) const {
+  if (positions.size() != static_cast<std::size_t>(kPaddedStride) * static_cast<std::size_t>(vertex_count_))
+    throw InvalidArgument(std::string(function) + ": positions must be those of all points at rest");
+}
 
 ContactFinder::ContactFinder(const Simplices& simplices, std::span<const Point> points,
                              ContactOptions options)
-    : state_(std::make_unique<State>()) {
-  if (!(options.reach >= 0.0)) throw InvalidArgument("contacts: the reach must not be negative");
-  for (const ContactOptions::With& with : options.obstacles) {
+    : options_(std::move(options)), vertex_count_(index_size(points)) {
+  if (!(options_.reach >= 0.0)) throw InvalidArgument("contacts: the reach must not be negative");
+  for (const ContactOptions::With& with : options_.obstacles) {
     if (!with.obstacle) throw InvalidArgument("contacts: an obstacle is missing");
   }
   BodySurface surface = body_surface(simplices, points);
-  if (options.with_itself) state_->itself.emplace(simplices, points, surface);
-  state_->options = std::move(options);
-  state_->vertex_count = index_size(points);
-  state_->surface = std::move(surface.vertices);
-  sort_into_runs(state_->surface, kInCluster, points);
-  state_->clusters.resize(chunk_count(index_size(state_->surface), kInCluster));
-  state_->boxes.resize(state_->clusters.size());
+  if (options_.with_itself) itself_.emplace(simplices, points, surface);
+  surface_ = std::move(surface.vertices);
+  sort_into_runs(surface_, kInCluster, points);
+  clusters_.resize(chunk_count(index_size(surface_), kInCluster));
+  boxes_.resize(clusters_.size());
 }
-ContactFinder::~ContactFinder() = default;
-ContactFinder::ContactFinder(ContactFinder&&) noexcept = default;
-ContactFinder& ContactFinder::operator=(ContactFinder&&) noexcept = default;
 
 void ContactFinder::find(std::span<const double> positions, std::span<const double> from,
                          std::vector<Contact>& contacts) {
-  State& state = *state_;
-  state.check(positions, "ContactFinder::find");
-  state.check(from, "ContactFinder::find");
+  check(positions, "ContactFinder::find");
+  check(from, "ContactFinder::find");
   contacts.clear();
-  if (state.itself) state.itself->find(positions, state.options.friction_with_itself, contacts);
-  state.find_near({positions, from}, state.options.reach);
-  for_each_chunk(index_size(state.surface), kInCluster, [&](Index c, Index begin, Index end) {
-    State::Cluster& cluster = state.clusters[c];
+  if (itself_) itself_->find(positions, options_.friction_with_itself, contacts);
+  find_near({positions, from}, options_.reach);
+  for_each_chunk(index_size(surface_), kInCluster, [&](Index c, Index begin, Index end) {
+    Cluster& cluster = clusters_[c];
     cluster.found.clear();
     for (const Index o : cluster.near) {
-      const auto& [obstacle, friction] = state.options.obstacles[o];
+      const auto& [obstacle, friction] = options_.obstacles[o];
       for (Index i = begin; i < end; ++i) {
-        const Index v = state.surface[i];
-        if (const auto place =
-                obstacle->nearest(point_of(positions, v), point_of(from, v), state.options.reach))
+        const Index v = surface_[i];
+        if (const auto place = obstacle->nearest(point_of(positions, v), point_of(from, v), options_.reach))
           cluster.found.push_back(contact_with(v, *place, friction, o));
       }
     }
   });
-  for (const State::Cluster& cluster : state.clusters)
+  for (const Cluster& cluster : clusters_)
     contacts.insert(contacts.end(), cluster.found.begin(), cluster.found.end());
   std::sort(contacts.begin(), contacts.end(), comes_before);
 }
 
 Penetration ContactFinder::penetration(std::span<const double> positions) {
-  State& state = *state_;
-  state.check(positions, "ContactFinder::penetration");
-  state.find_near({positions}, 0.0);
-  for_each_chunk(index_size(state.surface), kInCluster, [&](Index c, Index begin, Index end) {
-    State::Cluster& cluster = state.clusters[c];
+  check(positions, "ContactFinder::penetration");
+  find_near({positions}, 0.0);
+  for_each_chunk(index_size(surface_), kInCluster, [&](Index c, Index begin, Index end) {
+    Cluster& cluster = clusters_[c];
     cluster.deepest = 0.0;
     for (const Index o : cluster.near) {
       for (Index i = begin; i < end; ++i) {
-        const Point x = point_of(positions, state.surface[i]);
+        const Point x = point_of(positions, surface_[i]);
         if (is_finite(x))
-          cluster.deepest = std::max(cluster.deepest, -state.options.obstacles[o].obstacle->distance(x));
+          cluster.deepest = std::max(cluster.deepest, -options_.obstacles[o].obstacle->distance(x));
       }
     }
   });
   Penetration result;
-  for (const State::Cluster& cluster : state.clusters)
+  for (const Cluster& cluster : clusters_)
     result.into_obstacles = std::max(result.into_obstacles, cluster.deepest);
-  if (state.itself) {
-    const SelfContact::Depth depth = state.itself->depth(positions);
-    result.into_itself = depth.deepest;
-    result.vertices_in_itself = depth.vertices;
-  }
+  if (itself_) result.vertices_in_itself = itself_->vertices_inside(positions);
   return result;
 }
 
 std::size_t ContactFinder::bytes() const {
-  std::size_t sum = state_->surface.capacity() * sizeof(Index) + state_->boxes.capacity() * sizeof(Box) +
-                    state_->clusters.capacity() * sizeof(State::Cluster);
-  if (state_->itself) sum += state_->itself->bytes();
-  for (const State::Cluster& cluster : state_->clusters)
+  std::size_t sum = surface_.capacity() * sizeof(Index) + boxes_.capacity() * sizeof(Box) +
+                    clusters_.capacity() * sizeof(Cluster);
+  if (itself_) sum += itself_->bytes();
+  for (const Cluster& cluster : clusters_)
     sum += cluster.near.capacity() * sizeof(Index) + cluster.found.capacity() * sizeof(Contact);
   return sum;
 }

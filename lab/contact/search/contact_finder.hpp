@@ -2,10 +2,15 @@
 #pragma once
 
 #include "kernels/simplices.hpp"
+#include "lab/contact/geometry/box_tree.hpp"
 #include "lab/contact/obstacles/obstacle.hpp"
 #include "lab/contact/search/contact.hpp"
+#include "lab/contact/search/self_contact.hpp"
 
+#include <cstddef>
+#include <initializer_list>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,7 +33,6 @@ struct ContactOptions {
 /// The depth of a body in obstacles and in itself.
 struct Penetration {
   double into_obstacles = 0.0;  ///< depth of the deepest surface vertex, m
-  double into_itself = 0.0;     ///< depth of the deepest surface vertex, measured in the rest shape, m
   Index vertices_in_itself = 0;
 };
 
@@ -38,11 +42,6 @@ class ContactFinder {
  public:
   /// Takes the body at rest at `points`. Throws InvalidArgument for simplices that are no tetrahedra.
   ContactFinder(const Simplices& simplices, std::span<const Point> points, ContactOptions options);
-  ~ContactFinder();
-  ContactFinder(ContactFinder&&) noexcept;
-  ContactFinder& operator=(ContactFinder&&) noexcept;
-  ContactFinder(const ContactFinder&) = delete;
-  ContactFinder& operator=(const ContactFinder&) = delete;
 
   /// Finds the contacts of the surface's vertices at `positions`; the vertices were at `from` when the step
   /// began. Both have kPaddedStride numbers for each vertex (see padded_positions). The contacts are sorted
@@ -57,8 +56,23 @@ class ContactFinder {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  /// Vertices of the surface that are searched together.
+  struct Cluster {
+    std::vector<Index> near;  ///< obstacles
+    std::vector<Contact> found;
+    double deepest = 0.0;
+  };
+
+  /// Finds the obstacles near each cluster, whose vertices are at any of the positions in `places`.
+  void find_near(std::initializer_list<std::span<const double>> places, double reach);
+  void check(std::span<const double> positions, const char* function) const;
+
+  ContactOptions options_;
+  Index vertex_count_;
+  std::vector<Index> surface_;  ///< vertices of the surface, in clusters
+  std::optional<SelfContact> itself_;
+  std::vector<Cluster> clusters_;
+  std::vector<Box> boxes_;  ///< around clusters
 };
 
 }  // namespace meshorder

@@ -38,7 +38,7 @@ SelfContact::SelfContact(const Simplices& simplices, std::span<const Point> poin
   for (const Index v : surface.vertices) on_surface_[v] = true;
 }
 
-RestSurface::Place SelfContact::way_out(const VertexInside& inside, Index left_out) const {
+RestSurface::Place SelfContact::way_out(const VertexInside& inside) const {
   constexpr double kAboveRounding = 1.0 + 1e-6;
   const std::array<Index, 4> corners = search_.corners(inside.tetrahedron);
   Point place{};
@@ -48,14 +48,14 @@ RestSurface::Place SelfContact::way_out(const VertexInside& inside, Index left_o
   for (const Index corner : corners) {
     if (on_surface_[corner]) within = std::min(within, kAboveRounding * norm(minus(place, rest_[corner])));
   }
-  return surface_.nearest(place, left_out, within);
+  return surface_.nearest(place, inside.vertex, within);
 }
 
 void SelfContact::find(std::span<const double> positions, double friction, std::vector<Contact>& contacts) {
   search_.find(positions, inside_);
   std::vector<RestSurface::Place> places(inside_.size());
   for_each_chunk(index_size(inside_), kPlacesAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) places[i] = way_out(inside_[i], inside_[i].vertex);
+    for (Index i = begin; i < end; ++i) places[i] = way_out(inside_[i]);
   });
   for (std::size_t i = 0; i < inside_.size();) {
     const Index vertex = inside_[i].vertex;
@@ -71,14 +71,13 @@ void SelfContact::find(std::span<const double> positions, double friction, std::
   }
 }
 
-SelfContact::Depth SelfContact::depth(std::span<const double> positions) {
+Index SelfContact::vertices_inside(std::span<const double> positions) {
   search_.find(positions, inside_);
-  Depth result;
+  Index count = 0;
   for (std::size_t i = 0; i < inside_.size(); ++i) {
-    if (i == 0 || inside_[i].vertex != inside_[i - 1].vertex) ++result.vertices;
-    result.deepest = std::max(result.deepest, way_out(inside_[i], RestSurface::kNone).distance);
+    if (i == 0 || inside_[i].vertex != inside_[i - 1].vertex) ++count;
   }
-  return result;
+  return count;
 }
 
 std::size_t SelfContact::bytes() const {

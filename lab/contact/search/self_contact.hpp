@@ -26,18 +26,15 @@ class SelfContact {
   /// of the deformed triangle; a triangle without area makes no contact.
   void find(std::span<const double> positions, double friction, std::vector<Contact>& contacts);
 
-  struct Depth {
-    double deepest = 0.0;  ///< m from the surface, in the rest shape
-    Index vertices = 0;    ///< inside
-  };
-  [[nodiscard]] Depth depth(std::span<const double> positions);
+  /// Returns the number of vertices of the surface that are inside tetrahedra of other vertices.
+  [[nodiscard]] Index vertices_inside(std::span<const double> positions);
 
   /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  /// Returns the way out of the rest shape, through any triangle without the corner `left_out`.
-  [[nodiscard]] RestSurface::Place way_out(const VertexInside& inside, Index left_out) const;
+  /// Returns the way out of the rest shape, through any triangle without the vertex.
+  [[nodiscard]] RestSurface::Place way_out(const VertexInside& inside) const;
 
   std::vector<Point> rest_;
   std::vector<bool> on_surface_;
