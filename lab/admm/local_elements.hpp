@@ -4,10 +4,12 @@
 #include "lab/admm/local_pass.hpp"
 #include "lab/linear/cholesky/ldl.hpp"
 
+#include <cstdint>
 #include <span>
 
 namespace meshorder {
 
+enum class LocalModel : std::uint8_t;
 struct LocalLaw;
 
 /// Rest data of elements for the local steps: springs on two corners or tetrahedra on four, in the batches of
@@ -51,5 +53,10 @@ LocalElements<Real> local_elements(const LocalLaw& law, const Simplices& simplic
 /// Returns Σ Dᵀw²D on n vertices. O(elements · log degree).
 template <class Real>
 SparseMatrix stiffness_of(const LocalElements<Real>& elements, Index n);
+
+/// Returns Σ U(D x) of all elements: see LocalSteps::energy. Runs on all threads, one element at a time, with
+/// the same bits for any number of threads.
+template <class Real>
+double energy_of(LocalModel model, const LocalElements<Real>& elements, std::span<const Real> positions);
 
 }  // namespace meshorder

@@ -1,8 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/admm/local_energy.hpp"
-
 #include "base/parallel.hpp"
 #include "kernels/positions.hpp"
+#include "lab/admm/local_elements.hpp"
 #include "lab/admm/local_steps.hpp"
 #include "lab/support/rotation.hpp"
 

@@ -3,7 +3,6 @@
 
 #include "base/parallel.hpp"
 #include "kernels/positions.hpp"
-#include "lab/admm/local_energy.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/core.h>

@@ -1,17 +1,18 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// Included once for each instruction set, as lanes-inl.hpp is.
-#if defined(MESHORDER_TETRAHEDRA_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef MESHORDER_TETRAHEDRA_INL
-#undef MESHORDER_TETRAHEDRA_INL
-#else
-#define MESHORDER_TETRAHEDRA_INL
-#endif
-
-#include "kernels/float_lanes-inl.hpp"
 #include "lab/admm/local_pass.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lab/admm/local_tetrahedra.cpp"
+#include <hwy/foreach_target.h>
+// from here on compiled once for each instruction set
+#include "kernels/float_lanes-inl.hpp"
+#include "kernels/rotation-inl.hpp"
+#include "lab/admm/hyperelastic_laws-inl.hpp"
+#include "lab/admm/proximal-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
+namespace {
 
 /// Adds F = Dₛ Dₘ⁻¹ of Lanes::kCount tetrahedra to f.
 template <class Lanes>
@@ -113,7 +114,59 @@ HWY_INLINE void pass_tetrahedra(const LocalPass<typename Lanes::Number>& pass) {
   }
 }
 
+/// U = ½w²‖F − R‖², whose step goes halfway to the closest rotation.
+template <class Lanes>
+struct LinearStrain {
+  using Value = typename Lanes::Value;
+
+  HWY_INLINE explicit LinearStrain(const typename Lanes::Number* /*softness*/) {}
+
+  HWY_INLINE void step(const Value (&q)[3][3], Value (&z)[3][3]) const {
+    closest_rotations<Lanes>(q, z);
+    MESHORDER_UNROLL
+    for (int k = 0; k < 9; ++k) z[k / 3][k % 3] = Lanes::set(0.5) * (q[k / 3][k % 3] + z[k / 3][k % 3]);
+  }
+};
+
+template <class Lanes>
+using Stvk = ProximalStep<Lanes, StvkSteps<Lanes>>;
+template <class Lanes>
+using NeoHookean = ProximalStep<Lanes, NeoHookeanSteps<Lanes>>;
+template <class Lanes>
+using LogNeoHookean = ProximalStep<Lanes, LogNeoHookeanSteps<Lanes>>;
+
+template <template <class> class Law>
+void doubles(const LocalPass<double>& pass) {
+  pass_tetrahedra<ManyLanes, Law<ManyLanes>>(pass);
+}
+template <template <class> class Law>
+void floats(const LocalPass<float>& pass) {
+  pass_tetrahedra<ManyFloatLanes, Law<ManyFloatLanes>>(pass);
+}
+
+void strain_doubles(const LocalPass<double>& pass) { doubles<LinearStrain>(pass); }
+void strain_floats(const LocalPass<float>& pass) { floats<LinearStrain>(pass); }
+void stvk_doubles(const LocalPass<double>& pass) { doubles<Stvk>(pass); }
+void stvk_floats(const LocalPass<float>& pass) { floats<Stvk>(pass); }
+void neo_hookean_doubles(const LocalPass<double>& pass) { doubles<NeoHookean>(pass); }
+void neo_hookean_floats(const LocalPass<float>& pass) { floats<NeoHookean>(pass); }
+void log_neo_hookean_doubles(const LocalPass<double>& pass) { doubles<LogNeoHookean>(pass); }
+void log_neo_hookean_floats(const LocalPass<float>& pass) { floats<LogNeoHookean>(pass); }
+
+}  // namespace
 }  // namespace meshorder::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
+#if HWY_ONCE
+
+#include "kernels/simd_dispatch.hpp"
+
+namespace meshorder {
+
+MESHORDER_EXPORT_LOCAL_PASS(strain)
+MESHORDER_EXPORT_LOCAL_PASS(stvk)
+MESHORDER_EXPORT_LOCAL_PASS(neo_hookean)
+MESHORDER_EXPORT_LOCAL_PASS(log_neo_hookean)
+
+}  // namespace meshorder
 #endif
