@@ -19,12 +19,29 @@ struct ContactForce {
 /// obstacle, the last one counts.
 class RememberedForces {
  public:
-  void remember(std::span<const Contact> contacts, std::span<const ContactForce> forces);
+  void remember(std::span<const Contact> contacts, std::span<const ContactForce> forces) {
+    entries_.clear();
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      entries_.push_back({contacts[k].vertices[0], contacts[k].with, forces[k]});
+    }
+    std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
+      return std::tie(a.vertex, a.with) < std::tie(b.vertex, b.with);
+    });
+  }
   void forget() { entries_.clear(); }
 
   /// Returns the force of the contact with this contact's vertex and obstacle; 0 if there was none.
   /// O(log contacts).
-  [[nodiscard]] ContactForce of(const Contact& contact) const;
+  [[nodiscard]] ContactForce of(const Contact& contact) const {
+    const auto after = std::upper_bound(
+        entries_.begin(), entries_.end(), contact, [](const Contact& wanted, const Entry& entry) {
+          return std::tie(wanted.vertices[0], wanted.with) < std::tie(entry.vertex, entry.with);
+        });
+    if (after == entries_.begin()) return {};
+    const Entry& entry = after[-1];
+    if (entry.vertex != contact.vertices[0] || entry.with != contact.with) return {};
+    return entry.force;
+  }
 
   [[nodiscard]] std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
 
