@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/embedded_vertices.hpp"
 
+#include "base/point.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,19 +10,14 @@
 namespace meshorder {
 namespace {
 
-Point difference(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-
-double determinant(const Point& a, const Point& b, const Point& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-         a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
+double determinant(const Point& a, const Point& b, const Point& c) { return dot(a, cross(b, c)); }
 
 /// Returns barycentric coordinates by Cramer's rule; not finite in a flat tetrahedron.
 std::array<double, 4> weights_of(const Point& at, const std::array<Point, 4>& corners) {
-  const Point a = difference(corners[1], corners[0]);
-  const Point b = difference(corners[2], corners[0]);
-  const Point c = difference(corners[3], corners[0]);
-  const Point x = difference(at, corners[0]);
+  const Point a = minus(corners[1], corners[0]);
+  const Point b = minus(corners[2], corners[0]);
+  const Point c = minus(corners[3], corners[0]);
+  const Point x = minus(at, corners[0]);
   const double volume = determinant(a, b, c);
   const std::array<double, 3> shares{determinant(x, b, c) / volume, determinant(a, x, c) / volume,
                                      determinant(a, b, x) / volume};

@@ -77,9 +77,6 @@ std::array<Point, 3> frame_about(const Point& axis) {
     for (double& x : v) x /= length;
     return v;
   };
-  const auto cross = [](const Point& a, const Point& b) {
-    return Point{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  };
   const Point along = scaled(axis);
   const Point other = std::abs(along[0]) < 0.7 ? Point{1, 0, 0} : Point{0, 1, 0};
   const Point across = scaled(cross(along, other));
