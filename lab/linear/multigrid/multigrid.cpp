@@ -75,7 +75,9 @@ struct LevelVectors {
 class Multigrid final : public Preconditioner {
  public:
   Multigrid(const BlockCsr& pattern, std::span<const Point> points)
-      : points_(points.begin(), points.end()), finest_vectors_(pattern.size()) {
+      : Preconditioner(pattern.size()),
+        points_(points.begin(), points.end()),
+        finest_vectors_(pattern.size()) {
     if (index_size(points) != pattern.size()) {
       throw InvalidArgument("make_multigrid: a point is needed for each row of the matrix");
     }
@@ -85,10 +87,17 @@ class Multigrid final : public Preconditioner {
     for (Index i = 0; i < index_size(order_); ++i) number_[order_[i]] = i;
   }
 
-  void update(const BlockCsr& matrix) override {
-    if (matrix.size() != index_size(order_)) {
-      throw InvalidArgument("multigrid: the matrix has another size than the one it was made for");
-    }
+  [[nodiscard]] std::size_t bytes() const override {
+    std::size_t result = finest_.bytes() + finest_vectors_.bytes() + sizeof(Point) * points_.capacity() +
+                         sizeof(Index) * (order_.capacity() + number_.capacity()) +
+                         sizeof(float) * coarsest_inverse_.size();
+    for (const auto& level : coarse_) result += level.bytes();
+    for (const auto& vectors : coarse_vectors_) result += vectors.bytes();
+    return result;
+  }
+
+ private:
+  void take(const BlockCsr& matrix) override {
     const BlockView<3> finest{matrix.offsets, matrix.columns, matrix.values, order_, number_};
     if (!is_made_) {
       make_levels(finest);
@@ -105,11 +114,8 @@ class Multigrid final : public Preconditioner {
     }
   }
 
-  void apply(std::span<const double> r, std::span<double> z) const override {
-    if (r.size() != 3 * order_.size() || z.size() != r.size() || !is_made_) {
-      throw InvalidArgument(
-          "multigrid: 3 doubles are needed for each row of the matrix, and an update before");
-    }
+  void multiply(std::span<const double> r, std::span<double> z) const override {
+    if (!is_made_) throw InvalidArgument("multigrid: an update is needed first");
     constexpr Index kRows = 8192;
     LevelVectors<3>& here = finest_vectors_;
     for_each_chunk(index_size(order_), kRows, [&](Index, Index begin, Index end) {
@@ -133,16 +139,6 @@ class Multigrid final : public Preconditioner {
     });
   }
 
-  [[nodiscard]] std::size_t bytes() const override {
-    std::size_t result = finest_.bytes() + finest_vectors_.bytes() + sizeof(Point) * points_.capacity() +
-                         sizeof(Index) * (order_.capacity() + number_.capacity()) +
-                         sizeof(float) * coarsest_inverse_.size();
-    for (const auto& level : coarse_) result += level.bytes();
-    for (const auto& vectors : coarse_vectors_) result += vectors.bytes();
-    return result;
-  }
-
- private:
   [[nodiscard]] BlockView<kRigidModes> view(const CoarseMatrix& matrix) const {
     const std::span<const Index> same = std::span(identity_).first(matrix.rows());
     return {matrix.offsets, matrix.columns, matrix.values, same, same};

@@ -5,14 +5,12 @@
 #include "kernels/owned_batches.hpp"
 #include "lab/linear/preconditioners/symmetric_block.hpp"
 #include "lab/linear/preconditioners/triangular_solve.hpp"
-#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <numbers>
-#include <string>
 
 namespace meshorder {
 namespace {
@@ -52,7 +50,8 @@ std::vector<bool> joining_vertices(const BlockCsr& pattern, const std::vector<In
 
 }  // namespace
 
-IncompleteCholesky::IncompleteCholesky(const BlockCsr& pattern) : offsets_{0} {
+IncompleteCholesky::IncompleteCholesky(const BlockCsr& pattern)
+    : Preconditioner(pattern.size()), offsets_{0} {
   const Index n = pattern.size();
   // chunks have enough rows for a thread's task and are few, so that few vertices join them; their number is
   // a power of two, so that usual numbers of threads share them evenly
@@ -62,12 +61,12 @@ IncompleteCholesky::IncompleteCholesky(const BlockCsr& pattern) : offsets_{0} {
       balanced_ranges(pattern.offsets, static_cast<Index>(std::bit_floor(count)));
   const std::vector<bool> joins = joining_vertices(pattern, chunks);
   for (Index chunk = 0; chunk + 1 < index_size(chunks); ++chunk) {
-    bounds_.push_back(size());
+    bounds_.push_back(index_size(vertices_));
     for (Index v = chunks[chunk]; v < chunks[chunk + 1]; ++v) {
       if (!joins[v]) vertices_.push_back(v);
     }
   }
-  bounds_.push_back(size());
+  bounds_.push_back(index_size(vertices_));
   for (Index v = 0; v < n; ++v) {
     if (joins[v]) vertices_.push_back(v);
   }
@@ -96,11 +95,7 @@ void IncompleteCholesky::for_each_inner_range(Work work) const {
   for_each_part(index_size(bounds_) - 1, [&](Index chunk) { work(bounds_[chunk], bounds_[chunk + 1]); });
 }
 
-void IncompleteCholesky::update(const BlockCsr& matrix) {
-  if (matrix.size() != size()) {
-    throw InvalidArgument("preconditioner: made for " + std::to_string(size()) +
-                          " vertices, the matrix has " + std::to_string(matrix.size()));
-  }
+void IncompleteCholesky::take(const BlockCsr& matrix) {
   // elastic solids need a shift of about an eighth
   constexpr double kFirst = 1.0 / 64.0, kFactor = std::numbers::sqrt2, kMax = 64.0;
   shift_ = 0.0;
@@ -146,7 +141,7 @@ void IncompleteCholesky::factor_rows(const BlockCsr& matrix, double shift, Index
       }
       std::array<double, 9> scaled{};
       for (int c = 0; c < 3; ++c) {
-        multiply(inverses_.data() + Offset{6} * u, block + 3 * c, scaled.data() + 3 * c);
+        meshorder::multiply(inverses_.data() + Offset{6} * u, block + 3 * c, scaled.data() + 3 * c);
       }
       subtract_product(pivot.data(), block, scaled.data());
       for (int k = 0; k < 9; ++k) values_[9 * (first + a) + k] = static_cast<float>(scaled[k]);
@@ -169,11 +164,7 @@ void IncompleteCholesky::keep_diagonal(const BlockCsr& matrix) {
   }
 }
 
-void IncompleteCholesky::apply(std::span<const double> r, std::span<double> z) const {
-  const auto entries = 3 * static_cast<std::size_t>(size());
-  if (r.size() != entries || z.size() != entries) {
-    throw InvalidArgument("preconditioner: r and z must hold 3 doubles for each vertex");
-  }
+void IncompleteCholesky::multiply(std::span<const double> r, std::span<double> z) const {
   const BlockFactor factor{vertices_.data(), offsets_.data(), columns_.data(), values_.data(),
                            inverses_.data()};
   for_each_inner_range([&](Index begin, Index end) { solve_lower(factor, r.data(), z.data(), begin, end); });

@@ -23,19 +23,18 @@ class IncompleteCholesky final : public Preconditioner {
   /// Takes and copies the pattern of the matrices. Throws InvalidArgument when a row lacks its diagonal.
   explicit IncompleteCholesky(const BlockCsr& pattern);
 
-  /// O(blocks · row length). Throws InvalidArgument when the matrix has another size.
-  void update(const BlockCsr& matrix) override;
-  void apply(std::span<const double> r, std::span<double> z) const override;
   [[nodiscard]] std::size_t bytes() const override;
 
   /// Returns the relative enlargement of the diagonal blocks; 0 if none was needed.
   [[nodiscard]] double shift() const noexcept { return shift_; }
 
  private:
+  /// O(blocks · row length).
+  void take(const BlockCsr& matrix) override;
+  void multiply(std::span<const double> r, std::span<double> z) const override;
   bool factor(const BlockCsr& matrix, double shift);
   void factor_rows(const BlockCsr& matrix, double shift, Index begin, Index end, std::atomic<bool>& definite);
   void keep_diagonal(const BlockCsr& matrix);
-  [[nodiscard]] Index size() const noexcept { return index_size(vertices_); }
   /// Calls `work(begin, end)` for the rows of each chunk, on all threads.
   template <class Work>
   void for_each_inner_range(Work work) const;

@@ -3,10 +3,8 @@
 
 #include "base/parallel.hpp"
 #include "lab/linear/preconditioners/symmetric_block.hpp"
-#include <meshorder/error.hpp>
 
 #include <algorithm>
-#include <string>
 
 namespace meshorder {
 namespace {
@@ -16,26 +14,14 @@ constexpr Index kRows = 4096;
 
 }  // namespace
 
-void LocalPreconditioner::apply(std::span<const double> r, std::span<double> z) const {
-  const auto entries = 3 * static_cast<std::size_t>(vertices_);
-  if (r.size() != entries || z.size() != entries) {
-    throw InvalidArgument("preconditioner: r and z must hold 3 doubles for each vertex");
-  }
-  for_each_chunk(vertices_, kRows,
+void LocalPreconditioner::multiply(std::span<const double> r, std::span<double> z) const {
+  for_each_chunk(size(), kRows,
                  [&](Index, Index begin, Index end) { apply_rows(r.data(), z.data(), begin, end); });
 }
 
-void LocalPreconditioner::check_size(const BlockCsr& matrix) const {
-  if (matrix.size() != vertices_) {
-    throw InvalidArgument("preconditioner: made for " + std::to_string(vertices_) +
-                          " vertices, the matrix has " + std::to_string(matrix.size()));
-  }
-}
-
-void Jacobi::update(const BlockCsr& matrix) {
-  check_size(matrix);
-  inverses_.resize(3 * static_cast<std::size_t>(vertices()));
-  for_each_chunk(vertices(), kRows, [&](Index, Index begin, Index end) {
+void Jacobi::take(const BlockCsr& matrix) {
+  inverses_.resize(3 * static_cast<std::size_t>(size()));
+  for_each_chunk(size(), kRows, [&](Index, Index begin, Index end) {
     for (Index v = begin; v < end; ++v) {
       const double* const block = matrix.values.data() + 9 * diagonal_block(matrix, v);
       for (int c = 0; c < 3; ++c) inverses_[Offset{3} * v + c] = inverse_or_one(block[4 * c]);
@@ -49,10 +35,9 @@ void Jacobi::apply_rows(const double* r, double* z, Index begin, Index end) cons
 
 std::size_t Jacobi::bytes() const { return inverses_.capacity() * sizeof(double); }
 
-void BlockJacobi::update(const BlockCsr& matrix) {
-  check_size(matrix);
-  inverses_.resize(6 * static_cast<std::size_t>(vertices()));
-  for_each_chunk(vertices(), kRows, [&](Index, Index begin, Index end) {
+void BlockJacobi::take(const BlockCsr& matrix) {
+  inverses_.resize(6 * static_cast<std::size_t>(size()));
+  for_each_chunk(size(), kRows, [&](Index, Index begin, Index end) {
     for (Index v = begin; v < end; ++v) {
       const double* const block = matrix.values.data() + 9 * diagonal_block(matrix, v);
       const SymmetricBlock inverse = definite_inverse(upper_triangle(block));
@@ -63,7 +48,7 @@ void BlockJacobi::update(const BlockCsr& matrix) {
 
 void BlockJacobi::apply_rows(const double* r, double* z, Index begin, Index end) const {
   for (Index v = begin; v < end; ++v) {
-    multiply(inverses_.data() + Offset{6} * v, r + Offset{3} * v, z + Offset{3} * v);
+    meshorder::multiply(inverses_.data() + Offset{6} * v, r + Offset{3} * v, z + Offset{3} * v);
   }
 }
 

@@ -10,32 +10,26 @@ namespace meshorder {
 /// few rows at a time while they are in the cache.
 class LocalPreconditioner : public Preconditioner {
  public:
-  /// Throws InvalidArgument if a size differs.
-  void apply(std::span<const double> r, std::span<double> z) const final;
+  using Preconditioner::Preconditioner;
 
   /// Computes z ≈ A⁻¹ r for the vertices begin … end − 1; r and z as in `apply`.
   virtual void apply_rows(const double* r, double* z, Index begin, Index end) const = 0;
 
- protected:
-  explicit LocalPreconditioner(Index vertices) : vertices_(vertices) {}
-  /// Throws InvalidArgument unless the matrix has `vertices()` block rows.
-  void check_size(const BlockCsr& matrix) const;
-  [[nodiscard]] Index vertices() const noexcept { return vertices_; }
-
  private:
-  Index vertices_;
+  void multiply(std::span<const double> r, std::span<double> z) const final;
 };
 
 /// z_i = r_i / |a_ii|. A diagonal entry that is 0 or not finite counts as 1, so that the preconditioner stays
 /// positive definite and the solver detects the bad matrix.
 class Jacobi final : public LocalPreconditioner {
  public:
-  explicit Jacobi(Index vertices) : LocalPreconditioner(vertices) {}
-  void update(const BlockCsr& matrix) override;
+  using LocalPreconditioner::LocalPreconditioner;
   void apply_rows(const double* r, double* z, Index begin, Index end) const override;
   [[nodiscard]] std::size_t bytes() const override;
 
  private:
+  void take(const BlockCsr& matrix) override;
+
   AlignedVector<double> inverses_;  ///< 3 for each vertex
 };
 
@@ -43,12 +37,13 @@ class Jacobi final : public LocalPreconditioner {
 /// that is not positive definite is replaced by its diagonal, as in `Jacobi`.
 class BlockJacobi final : public LocalPreconditioner {
  public:
-  explicit BlockJacobi(Index vertices) : LocalPreconditioner(vertices) {}
-  void update(const BlockCsr& matrix) override;
+  using LocalPreconditioner::LocalPreconditioner;
   void apply_rows(const double* r, double* z, Index begin, Index end) const override;
   [[nodiscard]] std::size_t bytes() const override;
 
  private:
+  void take(const BlockCsr& matrix) override;
+
   AlignedVector<double> inverses_;  ///< 6 for each vertex: 00 01 02 11 12 22
 };
 

@@ -10,6 +10,22 @@
 
 namespace meshorder {
 
+void Preconditioner::update(const BlockCsr& matrix) {
+  if (matrix.size() != size_) {
+    throw InvalidArgument("preconditioner: made for " + std::to_string(size_) + " vertices, the matrix has " +
+                          std::to_string(matrix.size()));
+  }
+  take(matrix);
+}
+
+void Preconditioner::apply(std::span<const double> r, std::span<double> z) const {
+  const auto entries = 3 * static_cast<std::size_t>(size_);
+  if (r.size() != entries || z.size() != entries) {
+    throw InvalidArgument("preconditioner: r and z must hold 3 doubles for each vertex");
+  }
+  multiply(r, z);
+}
+
 std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const BlockCsr& pattern,
                                                     std::span<const Point> points) {
   if (points.size() != static_cast<std::size_t>(pattern.size())) {

@@ -17,15 +17,28 @@ namespace meshorder {
 /// symmetric and positive definite, too. Results have the same bits for any number of threads.
 class Preconditioner : public Polymorphic {
  public:
-  /// Takes the values of a matrix with the preconditioner's pattern. Call it before `apply`, and again after
-  /// the matrix has changed.
-  virtual void update(const BlockCsr& matrix) = 0;
+  /// Makes a preconditioner for matrices with this number of rows of blocks.
+  explicit Preconditioner(Index size) : size_(size) {}
 
-  /// Computes z ≈ A⁻¹ r, 3 doubles for each vertex.
-  virtual void apply(std::span<const double> r, std::span<double> z) const = 0;
+  /// Takes the values of a matrix with the preconditioner's pattern. Call it before `apply`, and again after
+  /// the matrix has changed. Throws InvalidArgument when the matrix has another size.
+  void update(const BlockCsr& matrix);
+
+  /// Computes z ≈ A⁻¹ r, 3 doubles for each vertex. Throws InvalidArgument if a size differs.
+  void apply(std::span<const double> r, std::span<double> z) const;
 
   /// Returns the memory held, in bytes.
   [[nodiscard]] virtual std::size_t bytes() const = 0;
+
+ protected:
+  [[nodiscard]] Index size() const noexcept { return size_; }
+
+ private:
+  /// `update` and `apply` for arguments of the right size.
+  virtual void take(const BlockCsr& matrix) = 0;
+  virtual void multiply(std::span<const double> r, std::span<double> z) const = 0;
+
+  Index size_;
 };
 
 enum class PreconditionerKind : std::uint8_t {
