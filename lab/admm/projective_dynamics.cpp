@@ -68,15 +68,7 @@ ProjectiveDynamics<Real>::ProjectiveDynamics(std::span<const Point> points, cons
 
 template <class Real>
 MotionState ProjectiveDynamics<Real>::state() const {
-  MotionState state;
-  state.step = steps_;
-  state.time = options_.time_step * steps_;
-  state.positions.resize(masses_.size());
-  state.velocities.resize(masses_.size());
-  for (std::size_t v = 0; v < masses_.size(); ++v) {
-    std::copy_n(positions_.begin() + static_cast<Offset>(kPaddedStride * v), 3, state.positions[v].begin());
-    std::copy_n(velocities_.begin() + static_cast<Offset>(3 * v), 3, state.velocities[v].begin());
-  }
+  MotionState state = state_of(steps_, options_.time_step, positions_, velocities_);
   if (options_.keep_duals && steps_ > 0) {
     const std::vector<Real> duals = local_.duals();
     state.memory.assign(duals.begin(), duals.end());
@@ -92,10 +84,8 @@ void ProjectiveDynamics<Real>::set_state(const MotionState& state) {
   } else {
     local_.set_duals(std::vector<Real>(state.memory.begin(), state.memory.end()));
   }
+  take_state(state, positions_, velocities_);
   steps_ = state.step;
-  positions_ = padded_positions(state.positions);
-  for (std::size_t v = 0; v < masses_.size(); ++v)
-    std::copy_n(state.velocities[v].begin(), 3, velocities_.begin() + static_cast<Offset>(3 * v));
 }
 
 template <class Real>

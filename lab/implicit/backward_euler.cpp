@@ -76,26 +76,14 @@ BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, Im
 }
 
 MotionState BackwardEuler::state() const {
-  MotionState state;
-  state.step = steps_;
-  state.time = options_.time_step * steps_;
-  state.positions.resize(system_.vertex_count());
-  state.velocities.resize(system_.vertex_count());
-  for (Index v = 0; v < system_.vertex_count(); ++v) {
-    std::copy_n(positions_.begin() + Offset{kPaddedStride} * v, 3, state.positions[v].begin());
-    std::copy_n(velocities_.begin() + Offset{3} * v, 3, state.velocities[v].begin());
-  }
-  return state;
+  return state_of(steps_, options_.time_step, positions_, velocities_);
 }
 
 void BackwardEuler::set_state(const MotionState& state) {
   check_state(state, system_.vertex_count());
+  // the arrays stay where they are, at a distance from the forces (see kApart)
+  take_state(state, positions_, velocities_);
   steps_ = state.step;
-  // copied into memory at a distance from the forces (see kApart)
-  const AlignedVector<double> positions = padded_positions(state.positions);
-  std::copy(positions.begin(), positions.end(), positions_.begin());
-  for (Index v = 0; v < system_.vertex_count(); ++v)
-    std::copy_n(state.velocities[v].begin(), 3, velocities_.begin() + Offset{3} * v);
 }
 
 StepReport BackwardEuler::step() {

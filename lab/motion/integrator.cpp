@@ -4,6 +4,7 @@
 #include "kernels/positions.hpp"
 #include <meshorder/error.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace meshorder {
@@ -19,6 +20,24 @@ void check_state(const MotionState& state, Index n) {
       throw InvalidArgument("the state of vertex " + std::to_string(v) + " is not finite");
     }
   }
+}
+
+MotionState state_of(Index steps, double time_step, std::span<const double> positions,
+                     std::span<const double> velocities) {
+  const std::size_t n = velocities.size() / 3;
+  MotionState state{steps, time_step * steps, std::vector<Point>(n), std::vector<Point>(n)};
+  for (std::size_t v = 0; v < n; ++v) {
+    state.positions[v] = point_of(positions, static_cast<Index>(v));
+    std::copy_n(velocities.begin() + static_cast<Offset>(3 * v), 3, state.velocities[v].begin());
+  }
+  return state;
+}
+
+void take_state(const MotionState& state, std::span<double> positions, std::span<double> velocities) {
+  const AlignedVector<double> padded = padded_positions(state.positions);
+  std::copy(padded.begin(), padded.end(), positions.begin());
+  for (std::size_t v = 0; v < state.velocities.size(); ++v)
+    std::copy_n(state.velocities[v].begin(), 3, velocities.begin() + static_cast<Offset>(3 * v));
 }
 
 Balance balance_of(std::span<const double> masses, std::span<const double> positions,

@@ -88,6 +88,14 @@ class Integrator : public Polymorphic {
 /// Throws InvalidArgument unless the state has n vertices and is finite.
 void check_state(const MotionState& state, Index n);
 
+/// Returns the state of a body whose vertices have these positions (kPaddedStride numbers for each vertex,
+/// see padded_positions) and velocities (3 numbers), without memory.
+MotionState state_of(Index steps, double time_step, std::span<const double> positions,
+                     std::span<const double> velocities);
+
+/// Copies the positions and velocities of a state that passes `check_state` to such arrays.
+void take_state(const MotionState& state, std::span<double> positions, std::span<double> velocities);
+
 /// Returns the conserved quantities of a body whose vertices have these masses, positions (kPaddedStride
 /// numbers for each vertex, see padded_positions), velocities and momenta (3 numbers), without its elastic
 /// energy. O(vertices).
