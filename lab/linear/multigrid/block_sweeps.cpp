@@ -249,18 +249,33 @@ void BlockSweeps<R>::update(const BlockView<R>& matrix) {
 }
 
 template <int R>
+void BlockSweeps<R>::clear(Given& given) const {
+  chunks_.for_each([&](Index, Index begin, Index end) {
+    for (AlignedVector<float>* const given_to : {&given.from_below, &given.from_above})
+      std::fill_n(given_to->begin() + Offset{kNodeStride<R>} * begin, kNodeStride<R> * (end - begin), 0.0F);
+  });
+}
+
+template <int R>
+SweptRows BlockSweeps<R>::rows_swept(Index begin, Index end, const float* b, float* x, Given* given) const {
+  return {offsets_.data(),
+          columns_.data(),
+          values_.data(),
+          inverse_diagonal_.data(),
+          begin,
+          end,
+          b,
+          x,
+          given == nullptr ? nullptr : given->from_below.data(),
+          given == nullptr ? nullptr : given->from_above.data()};
+}
+
+template <int R>
 void BlockSweeps<R>::forwards(const AlignedVector<float>& b, AlignedVector<float>& x,
                               AlignedVector<float>& residual, Given& given) const {
-  chunks_.for_each([&](Index, Index begin, Index end) {
-    std::fill_n(given.from_below.begin() + Offset{kNodeStride<R>} * begin, kNodeStride<R> * (end - begin),
-                0.0F);
-    std::fill_n(given.from_above.begin() + Offset{kNodeStride<R>} * begin, kNodeStride<R> * (end - begin),
-                0.0F);
-  });
+  clear(given);
   chunks_.for_each_forwards([&](Index begin, Index end) {
-    const SweptRows swept{
-        offsets_.data(), columns_.data(), values_.data(),          inverse_diagonal_.data(), begin, end,
-        b.data(),        x.data(),        given.from_below.data(), given.from_above.data()};
+    const SweptRows swept = rows_swept(begin, end, b.data(), x.data(), &given);
     if constexpr (R == 3) MESHORDER_SIMD(forwards_3)(swept);
     if constexpr (R == 6) MESHORDER_SIMD(forwards_6)(swept);
   });
@@ -275,16 +290,9 @@ void BlockSweeps<R>::forwards(const AlignedVector<float>& b, AlignedVector<float
 
 template <int R>
 void BlockSweeps<R>::backwards(const AlignedVector<float>& b, AlignedVector<float>& x, Given& given) const {
-  chunks_.for_each([&](Index, Index begin, Index end) {
-    std::fill_n(given.from_below.begin() + Offset{kNodeStride<R>} * begin, kNodeStride<R> * (end - begin),
-                0.0F);
-    std::fill_n(given.from_above.begin() + Offset{kNodeStride<R>} * begin, kNodeStride<R> * (end - begin),
-                0.0F);
-  });
+  clear(given);
   chunks_.for_each_backwards([&](Index begin, Index end) {
-    const SweptRows swept{
-        offsets_.data(), columns_.data(), values_.data(),          inverse_diagonal_.data(), begin, end,
-        b.data(),        x.data(),        given.from_below.data(), given.from_above.data()};
+    const SweptRows swept = rows_swept(begin, end, b.data(), x.data(), &given);
     if constexpr (R == 3) MESHORDER_SIMD(backwards_3)(swept);
     if constexpr (R == 6) MESHORDER_SIMD(backwards_6)(swept);
   });
@@ -295,9 +303,7 @@ void BlockSweeps<R>::residual_after_backwards(const AlignedVector<float>& before
                                               const AlignedVector<float>& x,
                                               AlignedVector<float>& residual) const {
   chunks_.for_each([&](Index, Index begin, Index end) {
-    const SweptRows swept{
-        offsets_.data(), columns_.data(), values_.data(), inverse_diagonal_.data(), begin, end, x.data(),
-        nullptr,         nullptr,         nullptr};
+    const SweptRows swept = rows_swept(begin, end, x.data(), nullptr, nullptr);
     if constexpr (R == 3) MESHORDER_SIMD(residual_3)(swept, before.data(), residual.data());
     if constexpr (R == 6) MESHORDER_SIMD(residual_6)(swept, before.data(), residual.data());
   });

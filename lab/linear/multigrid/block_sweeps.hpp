@@ -15,6 +15,8 @@ namespace meshorder {
 template <int R>
 inline constexpr Index kNodeStride = R == 3 ? 4 : 8;
 
+struct SweptRows;
+
 /// Gauss–Seidel by blocks on a symmetric matrix A = L + D + Lᵀ of R×R blocks. Only L, in float, and the
 /// inverses of D are kept. L serves both triangles, since the blocks that couple a row to earlier rows also
 /// give those rows their part of A x.
@@ -59,6 +61,9 @@ class BlockSweeps {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  void clear(Given& given) const;
+  [[nodiscard]] SweptRows rows_swept(Index begin, Index end, const float* b, float* x, Given* given) const;
+
   RowChunks chunks_;
   std::vector<Offset> offsets_{0};  ///< of L
   std::vector<Index> columns_;
