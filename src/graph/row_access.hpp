@@ -28,6 +28,7 @@ namespace meshorder {
 [[gnu::always_inline]] inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k) {
   constexpr Index kOffsetAhead = 48;
   constexpr Index kRowAhead = 24;
+  if (graph.neighbours.empty()) return;  // no address to count from
   const Index last = index_size(order) - 1;
   __builtin_prefetch(graph.offsets.data() + order[k + std::min(kOffsetAhead, last - k)]);
   prefetch_entries(graph.neighbours.data() + graph.offsets[order[k + std::min(kRowAhead, last - k)]]);
