@@ -220,8 +220,10 @@ void print_fluid_steps(const Console& console, const Simulation& simulation, con
   console.print("{:<10} {} iterations, {:.1f} a step, {} to {}", "CG", with_commas(sum.cg_iterations),
                 sum.cg_iterations / steps, lowest, highest);
   const auto& fluid = dynamic_cast<const Fluid&>(*simulation.body);
-  if (!fluid.order().ordering().stays())
-    console.print("{:<10} {} more times in this run", "ordered", fluid.order().fresh_orders());
+  if (!fluid.order().ordering().stays()) {
+    const auto orders = fluid.order().fresh_orders();
+    console.print("{:<10} {} more {} in this run", "ordered", orders, orders == 1 ? "time" : "times");
+  }
   double time = 0;
   for (const StepRecord& step : record.steps) time += step.report.time_step;
   console.print("{:<10} {:.4g} s of the flow; {} tetrahedra in the last step", "flow", time,

@@ -189,7 +189,7 @@ GpuReport gpu_report(const Mesh& mesh, const CsrGraph& graph, const GpuCard* car
 }
 
 std::string to_string(const GpuReport& report) {
-  if (is_empty(report)) return "nothing to compute: the mesh has no elements";
+  if (is_empty(report)) return "nothing to compute: it has no elements";
   if (report.keeps()) return "its order is good for a graphics processor";
   std::vector<std::string> changes;
   const auto add = [&](const char* of, double ratio) {

@@ -191,9 +191,9 @@ class TriedCase final : public TrialSubject {
 
   void check_order(const std::string& name) const override {
     if (name == "auto" || name == kRenumberMesh || method_named(vertex_methods(), name)) return;
-    refuse_order(
-        name, name, vertex_methods(), kRenumberMesh,
-        fmt::format("give a vertex method that meshorder methods lists, or {}, the default", kRenumberMesh));
+    refuse_order(name, name, vertex_methods(), kRenumberMesh,
+                 fmt::format("give a vertex method that meshorder methods lists, or {} for its own order",
+                             kRenumberMesh));
   }
 
   bool make(TriedOrder& order, TrialFolder& folder, std::size_t number) const override {

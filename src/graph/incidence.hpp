@@ -48,7 +48,7 @@ Incidence transposed(IncidenceRef incidence);
 
 /// Joins any two vertices of a common element: the vertex graph of a mesh (the paper, section 3). Vertices
 /// that an element repeats make no loop. Throws TooLarge if elements of more than `kManyJoined` vertices
-/// would make a graph beyond the limit on memory. O(sum of element sizes squared).
+/// would make a graph beyond the memory limit. O(sum of element sizes squared).
 CsrGraph joined_vertices(IncidenceRef elements);
 
 /// Joins any two elements that share a vertex: the dual graph of the paper, section 4.1. This is

@@ -154,8 +154,8 @@ std::vector<Index> cells_for(const Mesh& mesh, const std::vector<TypeCount>& typ
   return left_out.empty() ? all_cells(mesh) : cells_but(mesh, left_out);
 }
 
-/// Returns why a file of the format cannot hold all cells of a mesh: a type that the format has no place for,
-/// or a conflict of types. Returns an empty text if the file can hold all cells. O(cells).
+/// Returns why a file of the format cannot hold all cells of a mesh: a type that the format cannot hold, or a
+/// conflict of types. Returns an empty text if the file can hold all cells. O(cells).
 std::string fault_of_cells(const Mesh& mesh, std::vector<TypeCount> types, const Format& format) {
   std::erase_if(types, [&](const TypeCount& type) { return format.holds(mesh, type.shape, type.vertices); });
   // the message names a type of this dimension: lower types may be left out

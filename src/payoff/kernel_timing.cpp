@@ -151,10 +151,11 @@ std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, c
   plan_each([&](KernelBench& bench, Kernel kernel, const Plan& before) {
     return plan_samples(bench, kernel, !before.has_run(), options);
   });
-  const double planned = stopwatch.seconds();
+  double round_start = stopwatch.seconds();
   for (int round = 0; round < options.max_rounds; ++round) {
     const double seconds = stopwatch.seconds();
-    if (round >= options.min_rounds && seconds + (seconds - planned) / round > budget_seconds) break;
+    if (round >= options.min_rounds && seconds + (seconds - round_start) > budget_seconds) break;
+    round_start = seconds;
     for (std::size_t k = 0; k < kernels.size(); ++k) {
       watch.tick();
       for (std::size_t i = 0; i < orders; ++i) {

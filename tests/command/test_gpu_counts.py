@@ -111,7 +111,7 @@ def test_elements_of_several_sizes_are_said_not_to_be_counted(command, tmp_path)
 
 def test_points_alone_have_nothing_to_count(command, tmp_path):
     (tmp_path / "points.vtk").write_text(VTK + "CELLS 2 4\n1 0\n1 8\nCELL_TYPES 2\n1 1\n")
-    assert command.ok("info", "points.vtk", "--gpu").stdout.startswith("points.vtk: nothing to compute: the mesh has no elements")
+    assert command.ok("info", "points.vtk", "--gpu").stdout.startswith("points.vtk: nothing to compute: it has no elements")
     assert command.json("info", "points.vtk", "--gpu")["gpu"]["kernels"] == {}
 
 

@@ -64,7 +64,7 @@ def traced(tmp_path):
 def extensions():
     """All extensions of files that this build reads."""
     done = subprocess.run([conftest.MESHORDER, "info", "x.unknown"], capture_output=True, text=True, check=False)
-    return re.search(r"known: ([^;]*);", done.stderr).group(1).split()
+    return re.search(r"; known: ([^;]*);", done.stderr).group(1).split()
 
 
 def write_sample(traced, extension):

@@ -3,7 +3,9 @@
 
 #include "lab/contact/search/contact.hpp"
 
+#include <algorithm>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace meshorder {
