@@ -191,9 +191,9 @@ std::string to_text(const Table& table) {
 }
 
 std::string prose_as_html(std::string text) {
-  constexpr std::string_view kApart = " %", kTogether = "\u00a0%";
-  for (auto at = text.find(kApart); at != std::string::npos; at = text.find(kApart, at))
-    text.replace(at, kApart.size(), kTogether);
+  constexpr std::string_view kSpaced = " %", kJoined = "\u00a0%";
+  for (auto at = text.find(kSpaced); at != std::string::npos; at = text.find(kSpaced, at))
+    text.replace(at, kSpaced.size(), kJoined);
   std::string html;
   for_each_part(
       text, [&](std::string_view part) { html += xml_escaped(part); },
