@@ -6,6 +6,7 @@
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/format.hpp"
+#include "io/kept_cells.hpp"
 #include "matrix_points.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/simplices.hpp"
@@ -41,7 +42,7 @@ namespace meshorder {
 namespace {
 
 constexpr std::uint64_t kMostMemory = std::uint64_t{4} << 30;  // of a page: 32-bit addresses
-const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+const tbb::global_control kOneThread(tbb::global_control::max_allowed_parallelism, 1);
 
 /// The files that the page gave, and those that were written.
 class GivenFiles : public FileStore {
@@ -129,7 +130,7 @@ void order(const std::string& input, const std::string& output, const MeshMethod
   Mesh mesh = read_mesh_from({input, files}, {.notes = &notes});
   (void)files.take();
   const Format& format = output_format_of(output, mesh.format);
-  keep_cells(mesh, {.format = format.key(), .notes = &notes});
+  keep_cells_at(mesh, cells_to_write(mesh, {output, files}, format, false, notes), notes);
   command::require_points(mesh, input, methods.vertices, methods.elements);
   tell("graph", 0.3);
   const CsrGraph graph = vertex_graph(mesh);

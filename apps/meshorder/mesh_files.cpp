@@ -59,8 +59,8 @@ std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFil
   if (files.maps.empty()) return {};
   MeshChecksums after = checksums_of(ordered.mesh);
   // a matrix or graph is written as it was read, without the points given for its rows
-  const bool has_points = ordered.format->name != "MatrixMarket" && ordered.format->name != "METIS";
-  if (!files.points.empty() && !has_points) after.points = ordered.before.points;
+  const bool lacks_points = ordered.format->name == "MatrixMarket" || ordered.format->name == "METIS";
+  if (!files.points.empty() && lacks_points) after.points = ordered.before.points;
   return write_maps(ordered.maps, ordered.before, after, files.maps, outputs);
 }
 
