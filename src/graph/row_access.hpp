@@ -45,8 +45,8 @@ namespace meshorder {
 }
 
 /// Calls `visit(u)` for the entries u of a row with `numbers[u] < limit`, in their order. Compares many
-/// entries before it visits any: a processor cannot predict which ones are visited. Other threads may write
-/// numbers.
+/// entries before it visits any: a processor cannot predict which ones are visited. So it would visit a
+/// repeated entry twice. Other threads may write numbers.
 template <class Visit>
 void for_each_below(std::span<const Index> row, std::span<Index> numbers, Index limit, const Visit& visit) {
   constexpr std::size_t kAtOnce = 32;
