@@ -4,6 +4,7 @@
 #include "base/run_scope.hpp"
 #include "base/text.hpp"
 #include "ordering/all_methods.hpp"
+#include "ordering/space_filling.hpp"
 #include <meshorder/error.hpp>
 
 #include <array>
@@ -139,6 +140,7 @@ Order order_graph(std::string_view method, const VertexInput& input, const Order
   report("sort");
   Order result;
   if (const BuiltInVertexMethod* found = find_method(kVertexMethods, method)) {
+    if (found->needs_points) check_points(input.points, static_cast<std::size_t>(input.graph.size()), method);
     result = found->order(input, options);
     const bool stays = found->order == original_vertices || result.method.name == "original";  // by `auto`
     if (!stays) {
@@ -158,6 +160,8 @@ Order order_incidence(std::string_view method, const ElementInput& input, const 
   report("sort");
   Order result;
   if (const BuiltInElementMethod* found = find_method(kElementMethods, method)) {
+    if (found->needs_points)
+      check_points(input.points, static_cast<std::size_t>(input.elements.vertex_count), method);
     result = found->order(input, options);
   } else if (const ElementMethod registered = registered_element_method(method)) {
     const ElementProblem problem{input.elements.offsets, input.elements.vertices, input.vertices.old_to_new(),
