@@ -64,6 +64,14 @@ bool is_written_to(const FilePath& path, std::chrono::file_clock::time_point sin
   return path.store() == nullptr && !code && last > since - std::chrono::seconds(1);
 }
 
+/// Throws InputError for a file that Git LFS has put in the place of the real one.
+void refuse_pointer(const FilePath& path) {
+  constexpr std::string_view kBeginning = "version https://git-lfs.github.com/spec/";
+  if (path.is_file() && !path.is_empty() && path.read_first(kBeginning.size()) == kBeginning)
+    throw InputError(path.string(), "is a pointer of Git LFS, not the mesh",
+                     "get the mesh by `git lfs pull`");
+}
+
 /// Reads a mesh. Tries again if its files do not fit together and another process has just written there.
 Mesh read_together(const FilePath& path, const Format& format, Notes& notes) {
   constexpr int kAttempts = 20;
@@ -77,6 +85,9 @@ Mesh read_together(const FilePath& path, const Format& format, Notes& notes) {
       return mesh;
     } catch (const NotTogether&) {
       if (attempt == kAttempts || !is_written_to(path, began)) throw;
+    } catch (const InputError&) {
+      refuse_pointer(path);
+      throw;
     }
     std::this_thread::sleep_for(kPause);
   }

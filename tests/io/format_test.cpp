@@ -20,6 +20,7 @@ namespace {
 
 using test::TemporaryFolder;
 using testing::HasSubstr;
+using testing::Not;
 
 /// Cells of all linear volumes and surfaces, interleaved.
 Mesh interleaved(const std::vector<Shape>& shapes) {
@@ -81,6 +82,18 @@ TEST(Format, PassesOverAByteOrderMark) {
   EXPECT_EQ(format_of_bytes("\xEF\xBB\xBFMeshVersionFormatted 2")->name, "Medit");
   EXPECT_THAT(test::read_error(folder.file("only.obj", "\xEF\xBB\xBF")), HasSubstr("is empty"));
   EXPECT_THAT(test::read_error(folder.file("short.obj", "\xFF\xFE")), HasSubstr("short.obj"));
+}
+
+TEST(Format, SaysThatAFileIsAPointerOfGitLfs) {
+  const TemporaryFolder folder;
+  const std::string text = "version https://git-lfs.github.com/spec/v1\noid sha256:01ab\nsize 12345\n";
+  for (const Format& format : all_formats()) {
+    const std::string fault =
+        test::read_error(folder.file("pointer" + std::string(format.extensions.front()), text));
+    EXPECT_THAT(fault, HasSubstr("is a pointer of Git LFS, not the mesh; get the mesh by `git lfs pull`"));
+  }
+  EXPECT_THAT(test::read_error(folder.file("similar.off", "version https://example.org")),
+              Not(HasSubstr("Git LFS")));
 }
 
 TEST(ArrangeCells, MakesAConvertedFileHoldTheOrderThatWasComputed) {
