@@ -62,7 +62,7 @@ void note_no_better(const Mesh& mesh, const ReorderOptions& options, const Permu
 bool has_new_numbers(const Mesh& mesh, const MeshOrder& order, const Format& to, Ids ids) {
   const bool are_moved = !order.vertices.permutation.is_identity() || !order.cells.permutation.is_identity();
   const bool are_bound = mesh.format_metadata != nullptr && mesh.format_metadata->binds_ids();
-  return are_moved && !are_bound && ids != Ids::keep && has_numbers(to);
+  return are_moved && !are_bound && ids != Ids::keep && to.has_numbers;
 }
 
 }  // namespace meshorder::command

@@ -276,12 +276,6 @@ const Format& output_format_of(const std::filesystem::path& path, std::string_vi
   return of_mesh == "ucd" && format.name == "Abaqus" ? format_named("UCD") : format;
 }
 
-bool has_numbers(const Format& format) {
-  constexpr std::array<std::string_view, 7> kNames{"Gmsh", "Abaqus", "UCD", "Nastran",
-                                                   "UNV",  "Exodus", "MED"};
-  return std::find(kNames.begin(), kNames.end(), format.name) != kNames.end();
-}
-
 const Format& format_named(std::string_view name) {
   const auto found = std::find_if(kFormats.begin(), kFormats.end(),
                                   [&](const Format& format) { return same_but_for_case(format.name, name); });

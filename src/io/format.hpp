@@ -44,8 +44,9 @@ struct Format {
   /// statements before them in a file. They stay together unless the caller gives other groups. Null: no
   /// groups.
   std::vector<Index> (*together)(const Mesh&) = nullptr;
-  bool single_file = true;  ///< whether a mesh is one file; several files do not fit one stream
-  int first_number = 0;     ///< number of the first vertex and the first cell of a mesh without ids
+  bool single_file = true;   ///< whether a mesh is one file; several files do not fit one stream
+  int first_number = 0;      ///< number of the first vertex and the first cell of a mesh without ids
+  bool has_numbers = false;  ///< whether files number vertices and cells; other files may use these numbers
   /// Returns the number of the first vertex or the first cell of a mesh that came from the format. Null:
   /// `first_number` is right for all files.
   std::int64_t (*first_number_of)(const Mesh&, Association) = nullptr;
@@ -136,9 +137,6 @@ const Format& format_of_file(const FilePath& path);
 /// As `output_format_of`, for a mesh of the format `of_mesh` (`Mesh::format`): .inp means AVS UCD if the mesh
 /// came from it, else Abaqus.
 const Format& output_format_of(const std::filesystem::path& path, std::string_view of_mesh);
-
-/// Returns whether files of a format number vertices and cells. Other files may name them by these numbers.
-bool has_numbers(const Format& format);
 
 /// A format of other programs that meshorder does not read.
 struct OtherFormat {

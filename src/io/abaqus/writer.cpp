@@ -410,7 +410,8 @@ Format abaqus_format() {
           .read = abaqus::read,
           .write = abaqus::write,
           .holds = abaqus::holds,
-          .first_number = 1};
+          .first_number = 1,
+          .has_numbers = true};
 }
 
 }  // namespace meshorder

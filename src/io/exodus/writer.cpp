@@ -460,6 +460,7 @@ Format exodus_format() {
           .conflict = exodus::conflict,
           .places = exodus::places,
           .first_number = 1,
+          .has_numbers = true,
           .library = "netCDF",
           .load_library = exodus::load_library};
 }

@@ -265,7 +265,8 @@ Format gmsh_format() {
           .read = gmsh::read,
           .write = gmsh::write,
           .holds = gmsh::holds,
-          .first_number = 1};
+          .first_number = 1,
+          .has_numbers = true};
 }
 
 }  // namespace meshorder

@@ -386,6 +386,7 @@ Format med_format() {
           .write = med::write,
           .holds = med::holds,
           .first_number = 1,
+          .has_numbers = true,
           .library = "HDF5",
           .load_library = hdf5::load_library};
 }

@@ -156,7 +156,8 @@ Format nastran_format() {
           .read = nastran::read,
           .write = nastran::write,
           .holds = nastran::holds,
-          .first_number = 1};
+          .first_number = 1,
+          .has_numbers = true};
 }
 
 }  // namespace meshorder

@@ -199,7 +199,8 @@ Format ucd_format() {
           .read = ucd::read,
           .write = ucd::write,
           .holds = ucd::holds,
-          .first_number = 1};
+          .first_number = 1,
+          .has_numbers = true};
 }
 
 }  // namespace meshorder

@@ -479,7 +479,8 @@ Format unv_format() {
           .read = unv::read,
           .write = unv::write,
           .holds = unv::holds,
-          .first_number = 1};
+          .first_number = 1,
+          .has_numbers = true};
 }
 
 }  // namespace meshorder
