@@ -6,6 +6,7 @@
 #include <meshorder_mpi.h>
 #include <mpi.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -127,9 +128,13 @@ inline PartOrder order_parts(MPI_Comm communicator, const RankMesh& mesh, const 
   const mo_mpi_options wanted = detail::to_c(options);
   int ranks = 1;
   MPI_Comm_size(communicator, &ranks);
+  std::int64_t parts = options.parts > 0 ? options.parts : ranks;
+  std::int64_t vertices = 0;
+  MPI_Allreduce(&mesh.vertex_count, &vertices, 1, MPI_INT64_T, MPI_SUM, communicator);
+  if (options.parts > 0) parts = std::min(parts, vertices);  // more parts than vertices are refused
   PartOrder order;
   order.new_numbers.resize(detail::room_for(mesh.vertex_count));
-  order.part_starts.resize(detail::room_for(options.parts > 0 ? options.parts : ranks) + 1);
+  order.part_starts.resize(detail::room_for(parts) + 1);
   order.cell_parts.resize(static_cast<std::size_t>(given.cell_count));
   detail::throw_unless_ok(mo_mpi_order_parts(MPI_Comm_c2f(communicator), &given, &wanted,
                                              order.new_numbers.data(), order.part_starts.data(),
