@@ -84,9 +84,9 @@ set(CPACK_DEBIAN_COMMAND_DESCRIPTION
     "reorders simulation meshes so that physics runs faster
 meshorder reorders the vertices and elements of a simulation mesh, with all
 data in its file, so that neighbours in the mesh are neighbours in memory. It
-reads and writes TetGen, Vega, Gmsh, Medit, SU2, Abaqus, Nastran, I-deas,
-Exodus, XDMF, VTKHDF, CGNS, MED, VTK, OFF, OBJ, PLY and STL files, predicts and
-measures what an order is worth, and compares orders.")
+reads and writes TetGen, Vega, Gmsh, Medit, SU2, Abaqus, Nastran, I-deas, AVS
+UCD, Exodus, XDMF, VTKHDF, CGNS, MED, VTK, OFF, OBJ, PLY and STL files,
+predicts and measures what an order is worth, and compares orders.")
 
 set(CPACK_DEBIAN_LAB_PACKAGE_NAME meshorder-lab)
 set(CPACK_DEBIAN_LAB_PACKAGE_SECTION science)
