@@ -39,8 +39,8 @@ std::string label(const ComparisonReport& report, std::size_t i) {
 }
 
 /// Returns the answer in a sentence; an empty text if the file's own order is the only one.
-std::string sentence_on(const ComparisonReport& report, const Advice& advice, Workload told) {
-  if (!advice.candidates.empty()) return comparison_in_words(advice, told);
+std::string sentence_on(const ComparisonReport& report, const Advice& advice, Workload judged) {
+  if (!advice.candidates.empty()) return comparison_in_words(advice, judged);
   return report.auto_keeps ? "auto keeps the file's own order" : "";
 }
 
@@ -94,19 +94,19 @@ std::vector<Column> counted_columns(const ComparisonReport& comparison) {
   return columns;
 }
 
-/// Prints the speedups of the kernels over the file's own order, with bars for the workload `told`.
+/// Prints the speedups of the kernels over the file's own order, with bars for the workload `judged`.
 void print_speedups(const Console& console, const ComparisonReport& comparison, const KernelTable& table,
-                    Workload told) {
+                    Workload judged) {
   std::vector<Column> columns = columns_of(comparison, table);
   std::ranges::move(counted_columns(comparison), std::back_inserter(columns));
   // a matrix has one column; a mesh has a column for all kernels, and then one for each kernel
-  const std::size_t judged = comparison.is_matrix() || told == Workload::all ? 0 : kernel_of(told) + 1;
+  const std::size_t column = comparison.is_matrix() || judged == Workload::all ? 0 : kernel_of(judged) + 1;
   const auto width = [](const Column& c) { return std::max<std::size_t>(7, c.title.size() + 1); };
   std::string heads = fmt::format("{:<26} {:>8}", "order", "cost");
   for (const Column& c : columns) heads += fmt::format("{:>{}} ", c.title, width(c));
   console.print("\nHow many times faster than in the file's own order{}, the best marked by *\n{}",
                 on_threads(table.threads), heads);
-  const double longest = std::ranges::max(columns[judged].factors);
+  const double longest = std::ranges::max(columns[column].factors);
   for (std::size_t i = 0; i <= comparison.orders.size(); ++i) {
     const bool is_band = i == comparison.orders.size();
     std::string row = fmt::format("{:<26} {:>8}", is_band ? kBand : label(comparison, i),
@@ -115,7 +115,7 @@ void print_speedups(const Console& console, const ComparisonReport& comparison, 
       const std::string factor = i < c.factors.size() ? fmt::format("{:.2f}", c.factors[i]) : "-";
       row += fmt::format("{:>{}}{}", factor, width(c), !is_band && c.factors[i] == c.best ? '*' : ' ');
     }
-    console.print("{} {}", row, bar(columns[judged].factors[i] / longest, kBarWidth));
+    console.print("{} {}", row, bar(columns[column].factors[i] / longest, kBarWidth));
   }
 }
 
@@ -268,17 +268,17 @@ void add_kernels(nlohmann::ordered_json& to, const ComparisonReport& comparison,
 
 void print_comparison(const Console& console, const ComparisonReport& comparison) {
   const Advice advice = advice_of(comparison);
-  const Workload told = told_by_kernels(advice, comparison.workload);
-  const std::string sentence = sentence_on(comparison, advice, told);
+  const Workload judged = judged_by_kernels(advice, comparison.workload);
+  const std::string sentence = sentence_on(comparison, advice, judged);
   console.print("{}: {}", comparison.file,
                 sentence.empty() ? "--methods names only the file's own order" : sentence);
-  if (const std::optional<std::size_t> best = winner_for(told, advice))
+  if (const std::optional<std::size_t> best = winner_for(judged, advice))
     print_line_for(console, advice.candidates[*best], advice.is_matrix, comparison.file);
   for (const ComparedMeshOrder& c : comparison.orders) {
     const MethodChoice& taken = c.order.vertices.method;
     if (!taken.reason.empty()) console.print("auto takes {}: {}", taken.name, taken.reason);
   }
-  for (const KernelTable& table : comparison.kernels) print_speedups(console, comparison, table, told);
+  for (const KernelTable& table : comparison.kernels) print_speedups(console, comparison, table, judged);
   if (const std::string parts = parts_in_words(comparison); !parts.empty()) console.print("{}", parts);
   if (!comparison.gpu_layouts.empty()) {
     console.print(
@@ -332,13 +332,13 @@ nlohmann::ordered_json to_json(const ComparisonReport& comparison) {
   nlohmann::ordered_json band{{"vertices", kBand}, {"edge_span", to_json(comparison.band_span)}};
   add_kernels(band, comparison, [&](const KernelTable& table) -> const OrderTimes& { return table.band; });
   const Advice advice = advice_of(comparison);
-  const Workload told = told_by_kernels(advice, comparison.workload);
+  const Workload judged = judged_by_kernels(advice, comparison.workload);
   nlohmann::ordered_json verdict{{"sentence", nullptr}, {"best", nullptr}, {"factor", 1}};
-  if (std::string sentence = sentence_on(comparison, advice, told); !sentence.empty())
+  if (std::string sentence = sentence_on(comparison, advice, judged); !sentence.empty())
     verdict["sentence"] = std::move(sentence);
-  if (const std::optional<std::size_t> best = winner_for(told, advice)) {
+  if (const std::optional<std::size_t> best = winner_for(judged, advice)) {
     verdict["best"] = *best + (comparison.auto_keeps ? 2 : 1);
-    verdict["factor"] = factor_for(told, advice, *best);
+    verdict["factor"] = factor_for(judged, advice, *best);
   }
   auto steadiness = nlohmann::ordered_json::array();
   for (const KernelTable& table : comparison.kernels) {

@@ -232,7 +232,7 @@ struct OrderedMesh {
 
 /// Returns whether a method uses the centres of cells.
 bool needs_centres(const std::string& method, Workload workload) {
-  if (method == "auto") return is_told_by_kernels(workload);  // otherwise `auto` uses only the graph
+  if (method == "auto") return is_judged_by_kernels(workload);  // otherwise `auto` uses only the graph
   return needs_points(vertex_methods(), method);
 }
 

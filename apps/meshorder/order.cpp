@@ -50,7 +50,7 @@ void check_race(const OrderArguments& arguments) {
   const char* const option = arguments.measure ? "--measure" : "--predict";
   const ReorderOptions& options = arguments.reordering;
   const Workload use = options.order.workload;
-  if (!is_told_by_kernels(use)) {
+  if (!is_judged_by_kernels(use)) {
     throw InvalidArgument(
         fmt::format("{} chooses by kernel times, which do not apply to --for {}", option, to_string(use)));
   }

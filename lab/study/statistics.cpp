@@ -179,18 +179,18 @@ Speedup speedup_of(const std::vector<RunRecord>& runs, const std::vector<RunReco
   std::vector<std::vector<double>> saved;
   for (std::size_t r = 0; r < runs.size(); ++r)
     saved.push_back(differences(turns_of(reference[r], turn), turns_of(runs[r], turn)));
-  const bool told = runs.size() > 1 || saved.front().size() > 1;
+  const bool has_interval = runs.size() > 1 || saved.front().size() > 1;
   double half_width = 0;
   if (runs.size() > 1) {
     half_width = half_width_of_runs(saved);
-  } else if (told) {
+  } else if (has_interval) {
     half_width = half_width_of_ratio(turns_of(runs.front(), turn), turns_of(reference.front(), turn));
   }
   const double per_second = 100.0 / of_reference.mean;
   speedup.percent = per_second * speedup.saved_seconds;
   speedup.low = speedup.percent - per_second * half_width;
   speedup.high = speedup.percent + per_second * half_width;
-  speedup.beyond_noise = told && (speedup.low > 0.0 || speedup.high < 0.0);
+  speedup.beyond_noise = has_interval && (speedup.low > 0.0 || speedup.high < 0.0);
   if (of_reference.undisturbed > 0.0)
     speedup.undisturbed_percent = 100.0 * (1.0 - time.undisturbed / of_reference.undisturbed);
   return speedup;

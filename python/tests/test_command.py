@@ -186,7 +186,7 @@ def test_info_and_compare_name_the_users_file(deck, tmp_path):
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="Linux's")
-def test_a_full_disk_behind_stdout_is_an_error(deck, tmp_path):
+def test_a_stdout_on_a_full_disk_is_an_error(deck, tmp_path):
     with open("/dev/full", "w") as full:
         for line in ("info deck.hmf", "methods"):
             words = [str(COMMAND), *line.split()]
@@ -244,7 +244,7 @@ def test_what_cannot_be_read_or_written_gives_one_line(tmp_path):
     assert "Traceback" not in done.stderr
 
 
-def test_without_meshio_one_line_tells_how_to_get_it(tmp_path):
+def test_without_meshio_one_line_says_how_to_get_it(tmp_path):
     (tmp_path / "meshio.py").write_text("raise ImportError\n")
     done = run("info", "a.mdpa", cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(tmp_path)})
     assert done.returncode == 2 and done.stdout == ""

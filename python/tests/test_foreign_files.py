@@ -62,7 +62,7 @@ def test_bare_meshes_of_every_format(tmp_path, suffix):
     "suffix, kept",
     [(".hmf", {"point t", "point u", "cell m"}), (".post", set())],
 )  # fmt: skip
-def test_what_a_format_keeps_is_read_and_what_not_is_told(tmp_path, suffix, kept):
+def test_what_a_format_keeps_is_read_and_the_rest_is_reported(tmp_path, suffix, kept):
     given = made_by_meshio()
     mesh = meshorder.make_mesh(given)
     assert mesh.notes == [] and set(mesh.sets) == {"left", "some"}
@@ -97,7 +97,7 @@ def test_second_order_cells_there_and_back(tmp_path):
     np.testing.assert_array_equal(read.cells[0].data, given.cells[0].data)
 
 
-def test_mixed_cells_are_grouped_and_told(tmp_path):
+def test_mixed_cells_are_grouped_and_reported(tmp_path):
     points = np.random.default_rng(1).random((8, 3))
     cells = (np.array([0, 4, 7, 11]), np.array([0, 1, 2, 3, 0, 1, 2, 4, 5, 6, 7]), np.array([10, 5, 10]))
     notes = meshorder.write(meshorder.make_mesh(points, cells), tmp_path / "mixed.mdpa")
@@ -105,7 +105,7 @@ def test_mixed_cells_are_grouped_and_told(tmp_path):
     assert [block.type for block in meshio.read(tmp_path / "mixed.mdpa").cells] == ["tetra", "triangle"]
 
 
-def test_what_a_mesh_cannot_hold_is_told():
+def test_what_a_mesh_cannot_hold_is_reported():
     given = bare()
     given.point_data["wave"] = given.points[:, 0] * 1j
     given.point_data["stress"] = np.zeros((len(given.points), 3, 3))

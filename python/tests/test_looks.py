@@ -297,7 +297,7 @@ def test_the_page_has_the_surface_and_the_places_of_its_vertices(mesh, made, sho
     assert entries == dict.fromkeys(("as it is", "fiedler"), 2 * len(edges) + len(points))
 
 
-def test_the_page_asks_for_nothing_and_stands_in_a_frame(made, show):
+def test_the_page_asks_for_nothing_and_works_in_a_frame(made, show):
     page = show(made, ["rcm", "hilbert"])
     assert [one["name"] for one in Shown(page).manifest["orderings"]] == ["as it is", "rcm", "hilbert"]
     assert not re.search(r'(src|href)="(?!data:)', page.html)

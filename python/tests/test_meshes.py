@@ -258,7 +258,7 @@ def test_cells_of_second_order_in_the_plane_need_a_type(width):
 
 
 @pytest.mark.parametrize("shape", _WIDTHS)
-def test_the_library_takes_each_number_of_vertices_that_a_name_stands_for(shape):
+def test_the_library_takes_each_number_of_vertices_that_a_name_means(shape):
     for width in _WIDTHS[shape]:
         points = np.random.default_rng(width).random((width, 3))
         assert len(meshorder.order_mesh(points, {shape: [range(width)]}).cells.permutation) == 1

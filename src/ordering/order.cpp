@@ -27,8 +27,8 @@ void append(std::vector<std::string>& notes, const std::vector<std::string>& mor
 
 /// Returns the points. If the method uses them and they do not fit the graph, adds a note; for `auto`, then
 /// returns no points.
-PointsView points_to_go_by(const PointsView& points, GraphRef graph, std::string_view method,
-                           std::vector<std::string>& notes) {
+PointsView usable_points(const PointsView& points, GraphRef graph, std::string_view method,
+                         std::vector<std::string>& notes) {
   if (points.empty()) return points;
   const bool goes_by_points = method == "auto" || needs_points(vertex_methods(), method);
   if (!goes_by_points || points_fit(graph, points)) return points;
@@ -54,8 +54,8 @@ Order order_vertices(const GraphView& graph, std::string_view method, const Orde
     check_finite(points, static_cast<std::size_t>(clean.size()), options.check);
     const GraphRef clean_rows(clean.offsets, clean.neighbours);
     std::vector<std::string> notes = clean.notes;
-    const PointsView told = points_to_go_by(points, clean_rows, method, notes);
-    Order result = order_vertices_by_options(method, {clean_rows, told, clean.weights}, options);
+    const PointsView usable = usable_points(points, clean_rows, method, notes);
+    Order result = order_vertices_by_options(method, {clean_rows, usable, clean.weights}, options);
     append(result.notes, notes);
     result.seconds = stopwatch.seconds();
     return result;
@@ -101,8 +101,8 @@ MeshOrder order_mesh(const MeshView& mesh, const MeshMethods& methods, const Ord
       report("graph");
       const CsrGraph graph = vertex_graph(arrays);
       std::vector<std::string> notes;
-      const PointsView told = points_to_go_by(mesh.points, graph, methods.vertices, notes);
-      result.vertices = order_vertices_by_options(methods.vertices, {graph, told}, options);
+      const PointsView usable = usable_points(mesh.points, graph, methods.vertices, notes);
+      result.vertices = order_vertices_by_options(methods.vertices, {graph, usable}, options);
       append(result.vertices.notes, notes);
       result.vertices.seconds = vertex_time.seconds();
     }

@@ -104,12 +104,12 @@ std::optional<double> certain_gain(const Advice& advice);
 std::size_t kernel_of(Workload workload);
 
 /// Returns whether times of kernels decide which order is best for a workload.
-inline bool is_told_by_kernels(Workload workload) {
+inline bool is_judged_by_kernels(Workload workload) {
   return workload == Workload::all || kernel_of(workload) < kKernels.size();
 }
 
 /// Returns the workload if it has exactly one kernel and the advice covers this kernel; else `all`.
-Workload told_by_kernels(const Advice& advice, Workload workload);
+Workload judged_by_kernels(const Advice& advice, Workload workload);
 
 /// Returns the methods of a candidate: "hilbert", or "hilbert/original" if its elements are not in the
 /// default order for its vertices. For a matrix, the order of its rows.

@@ -314,7 +314,7 @@ FitQuality fit_all_threads(const Runs& runs, const Latencies& latencies, const C
 
 }  // namespace
 
-Latencies latencies_behind(const FoundCaches& found, const Caches& caches) {
+Latencies latencies_beyond(const FoundCaches& found, const Caches& caches) {
   const auto latency_behind = [&](Offset bytes) {
     for (const FoundCache& level : found.levels) {
       if (static_cast<double>(level.bytes) > kSameCache * static_cast<double>(bytes))
@@ -465,7 +465,7 @@ Calibration measure_machine(const CalibrationEffort& effort) {
              runs);
   calibration.steadiness = steadiness_of(runs.front().steadiness);
   calibration.all_threads = model;
-  const Latencies latencies = latencies_behind(calibration.found, model.caches);
+  const Latencies latencies = latencies_beyond(calibration.found, model.caches);
   calibration.quality = fit_all(runs.front(), latencies, model);
   calibration.all_threads_quality =
       calibration.threads > 1 ? fit_all_threads(runs.back(), latencies, model, calibration.all_threads)

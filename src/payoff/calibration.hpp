@@ -84,7 +84,7 @@ using Latencies = std::array<double, 4>;
 
 /// Returns the extra latencies of dependent loads, at least 1 ns each. The last two are equal: each is half
 /// of the difference between a load from memory and a load beyond the second size.
-Latencies latencies_behind(const FoundCaches& found, const Caches& caches);
+Latencies latencies_beyond(const FoundCaches& found, const Caches& caches);
 
 /// Fits the costs of a kernel on a machine with such caches. Loads overlap, so a jump costs only a share of
 /// its latency. An extra equation for each jump cost, with an eightieth of the weight of a run, says that all

@@ -59,7 +59,7 @@ MeshMethods Race::methods() const {
 
 Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options) {
   const Workload workload = options.ordering.workload;
-  if (!is_told_by_kernels(workload)) {
+  if (!is_judged_by_kernels(workload)) {
     throw InvalidArgument(fmt::format("race: no kernel measures {}", to_string(workload)));
   }
   Race result;

@@ -136,7 +136,7 @@ std::optional<double> certain_gain(const Advice& advice) {
   return is_vague(advice, k, factor) ? std::nullopt : std::optional(factor);
 }
 
-Workload told_by_kernels(const Advice& advice, Workload workload) {
+Workload judged_by_kernels(const Advice& advice, Workload workload) {
   return kernel_of(workload) < kernels_of(advice).size() ? workload : Workload::all;
 }
 
@@ -149,10 +149,10 @@ std::string order_in_words(const Candidate& candidate, bool is_matrix) {
 }
 
 std::string comparison_in_words(const Advice& advice, Workload workload) {
-  const Workload told = told_by_kernels(advice, workload);
-  const bool is_mean = told == Workload::all && !advice.is_matrix;
-  const std::string runs = runs_of(advice, told);
-  const std::optional<std::size_t> best = winner_for(told, advice);
+  const Workload judged = judged_by_kernels(advice, workload);
+  const bool is_mean = judged == Workload::all && !advice.is_matrix;
+  const std::string runs = runs_of(advice, judged);
+  const std::optional<std::size_t> best = winner_for(judged, advice);
   if (!best) {
     const std::size_t k = worst(advice.kernels);
     // require twice the margin: with many orders, the best factor for one kernel also exceeds 1 by chance
@@ -166,9 +166,9 @@ std::string comparison_in_words(const Advice& advice, Workload workload) {
         runs, on_threads(advice.threads));
   }
   const Candidate& candidate = advice.candidates[*best];
-  const double factor = factor_for(told, advice, *best);
+  const double factor = factor_for(judged, advice, *best);
   const std::string order = order_in_words(candidate, advice.is_matrix);
-  if (is_vague(advice, told, factor)) {
+  if (is_vague(advice, judged, factor)) {
     return fmt::format(
         "{} faster{} in {} than in the file's own order (measured while the machine was busy: the amount "
         "is uncertain)",
@@ -176,8 +176,8 @@ std::string comparison_in_words(const Advice& advice, Workload workload) {
   }
   const double steps = steps_to_pay(advice, *best);
   std::string pays;
-  if (told != Workload::all && !advice.is_matrix) {
-    pays = " and pays off after " + runs_to_pay(advice, candidate, kernel_of(told));
+  if (judged != Workload::all && !advice.is_matrix) {
+    pays = " and pays off after " + runs_to_pay(advice, candidate, kernel_of(judged));
   } else if (steps > 0) {
     pays = " and pays off after " + times(steps, advice.is_matrix ? "product" : "time step");
   }

@@ -30,7 +30,7 @@ def mesh(tmp_path):
 @pytest.mark.parametrize("line", ["info mesh.node", "info mesh.node --json", "methods", "methods --json", "--help",
                                   "order --help", "--version", "order mesh.node -o a.vtu", "models list",
                                   "simulate --list --json", "compare mesh.node --methods rcm --budget 0.1"])
-def test_a_full_disk_behind_stdout_is_an_error(tmp_path, mesh, line):
+def test_a_stdout_on_a_full_disk_is_an_error(tmp_path, mesh, line):
     done = run_into(line.split(), "/dev/full", tmp_path)
     assert done.returncode in (1, 2)
     *warnings, fault = done.stderr.splitlines()
@@ -68,7 +68,7 @@ def test_a_closed_pipe_is_no_error(tmp_path, mesh, line, restore_signals):
     assert child.returncode in (0, -signal.SIGPIPE)
 
 
-def test_warnings_are_told_from_errors(command, mesh):
+def test_warnings_differ_from_errors(command, mesh):
     done = command.ok("order", mesh, "-o", "a.veg")
     assert done.stderr and all(line.startswith("meshorder: warning: ") for line in done.stderr.splitlines())
     assert "warning" not in command.fails("order", "none.node", "-o", "a.veg")
@@ -301,6 +301,6 @@ def test_warnings_that_differ_in_a_name_are_one(command, tmp_path):
 
 
 @pytest.mark.parametrize("option", ["-q", "--json"])
-def test_an_option_before_its_command_is_told_where_to_stand(command, option):
+def test_an_option_before_its_command_gets_its_right_place(command, option):
     line = command.fails(option, "info", "mesh.msh")
     assert line == f"meshorder: '{option}' comes before the command; write meshorder info {option}"

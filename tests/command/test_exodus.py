@@ -629,7 +629,7 @@ def test_ids_of_64_bits_stay(command, tmp_path, ids):
         assert "vals_elem_var1eb1" not in c.variables and len(c.dimensions["num_el_blk"]) == 2
 
 
-def test_digits_that_no_type_of_all_blocks_has_are_told(command, tmp_path):
+def test_digits_that_no_type_of_all_blocks_has_are_reported(command, tmp_path):
     with write_pair(tmp_path / "a.exo", "NETCDF4") as f:
         put_variable_names(f, "elem", ["key"], [[1], [1]])
         put_series(f, "vals_elem_var1eb1", "num_el_in_blk1", "i8", [[2**53 + 1, 1], [2, 3]])

@@ -211,7 +211,7 @@ def test_decomposed_cases(command, case):
     assert command.fails("openfoam", "case", "--parallel").endswith("with decomposePar -fileHandler uncollated")
 
 
-def test_faults_leave_nothing_behind(command, case):
+def test_faults_leave_no_file(command, case):
     before = foam_cases.folder_files(case)
     owner = case / "constant" / "polyMesh" / "owner"
     text = owner.read_text()

@@ -260,7 +260,7 @@ def test_a_file_of_the_maps_is_not_their_prefix(command, tmp_path, name):
         f"meshorder: {name}: is one file of the maps; give their prefix, m"
 
 
-def test_maps_tell_which_was_which(command, tmp_path):
+def test_maps_say_which_was_which(command, tmp_path):
     meshes.write_tetgen(tmp_path)
     command.ok("order", "mesh.node", "-o", "new.node", "--vertices", "scrambled", "--elements", "scrambled", "--seed",
                "3", "--maps", "m")

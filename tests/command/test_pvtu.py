@@ -130,7 +130,7 @@ def second_piece(**changes):
     (second_piece(no_heights=True), ["all.pvtu", "'height' is missing in a piece"]),
     (second_piece(version="2.2"), ["p1.vtu", "only one has a version below 2.1"]),
 ])
-def test_faults_of_pieces_are_told(command, tmp_path, spoil, words):
+def test_faults_of_pieces_are_reported(command, tmp_path, spoil, words):
     write_pieces(tmp_path / "pieces", ghosts=False)
     (tmp_path / "secret.vtu").write_text("secret")
     spoil(tmp_path / "pieces")

@@ -444,7 +444,7 @@ def test_a_narrow_screen_needs_no_scrolling_sideways(page, path, width):
         assert wide <= width, part
 
 
-def test_on_paper_everything_stands_one_after_another(page):
+def test_on_paper_everything_follows_one_after_another(page):
     page.wait("views.motion && views.meshes && views.spans")  # views that are built in idle time
     page.driver.execute_async_script("const done = arguments[0]; Promise.all(Object.values(views).map((v) => v.ready)).then(done)")
     printed = page.pdf()
@@ -470,7 +470,7 @@ def test_what_a_study_does_not_hold_has_no_tab(page, path, tmp_path):
         assert shown(page, f"#{part} h2")
 
 
-def test_without_scripts_everything_stands_one_after_another(chromium, path):
+def test_without_scripts_everything_follows_one_after_another(chromium, path):
     chromium.driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
     try:
         chromium.driver.get(path.resolve().as_uri())

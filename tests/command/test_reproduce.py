@@ -30,7 +30,7 @@ def by_name(records, name, key="ordering"):
     return next(record for record in records if record[key] == name)
 
 
-def test_everything_stands_in_the_folder(study):
+def test_everything_is_in_the_folder(study):
     assert {path.name for path in study.iterdir()} == {"results.json", "tables.md", "tables.csv", "figures", "data",
                                                        "report.html"}
     assert len(list((study / "figures").glob("*.svg"))) >= 5

@@ -46,7 +46,7 @@ def test_a_checkout_has_the_revision_of_its_commit(checkout):
     assert revision(checkout) == git(checkout, "rev-parse", "HEAD")
 
 
-def test_changes_are_told_apart(checkout):
+def test_changes_are_distinguished(checkout):
     commit = git(checkout, "rev-parse", "HEAD")
     seen = set()
     for text in ("int b;\n", "int c; // ; [ ]\n"):
@@ -75,7 +75,7 @@ def test_sources_from_a_tarball_have_none_even_within_another_checkout(checkout,
         assert revision(folder) == ""
 
 
-def test_only_one_source_tells_the_revision():
+def test_only_one_source_has_the_revision():
     """If other sources included the revision, each commit would compile them again, without hits in ccache."""
     said = [path.relative_to(conftest.ROOT).as_posix() for folder in ("src", "lab", "apps", "include")
             for path in (conftest.ROOT / folder).rglob("*") if path.is_file()

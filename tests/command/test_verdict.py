@@ -14,7 +14,7 @@ def scrambled(command, model):
     return "scrambled.node"
 
 
-def test_a_scrambled_grid_is_told_what_it_loses(command, scrambled):
+def test_the_answer_says_what_a_scrambled_grid_loses(command, scrambled):
     text = command.ok("info", scrambled).stdout
     verdict, line = text.splitlines()[:2]
     assert verdict.startswith("scrambled.node: as it is, ") and "slower than it could" in verdict

@@ -286,7 +286,7 @@ def test_claims_count_against_the_memory_limit(command, tmp_path):
     assert "'/VTKHDF/CellData/zeros' would take" in command.fails("info", path, "--limit-memory", "100M")
 
 
-def test_what_is_not_kept_is_told(command, tmp_path):
+def test_what_is_not_kept_is_reported(command, tmp_path):
     path = write(tmp_path / "a.vtkhdf")
     with h5py.File(path, "a") as file:
         file["other"] = [1]

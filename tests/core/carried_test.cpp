@@ -60,7 +60,7 @@ TEST(Carried, LongChainsTakeNoQuadraticTime) {
   EXPECT_TRUE(std::is_sorted(order.begin(), order.end())) << "and this ends at all";
 }
 
-TEST(Carried, TellsWhatChanged) {
+TEST(Carried, ReportsWhatChanged) {
   const VertexChanges changes = changes_of(std::vector<Index>{2, -1, 0, -1}, 4, 3);
   EXPECT_THAT(changes.places, ElementsAre(2, -1, 0, -1));
   EXPECT_THAT(changes.added, ElementsAre(1, 3));

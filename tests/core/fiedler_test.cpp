@@ -170,7 +170,7 @@ TEST(FiedlerVector, OfACompleteBipartiteGraphIsTheSmallerSide) {
   for (const auto& [a, b] : sides) expect_eigenpair(test::complete_bipartite(a, b), std::min(a, b));
 }
 
-TEST(FiedlerVector, TellsCloseEigenvaluesApart) {
+TEST(FiedlerVector, SeparatesCloseEigenvalues) {
   // a spider: three paths from one centre; the two longest legs hold the vector
   std::vector<Edge> edges;
   Index next = 1;

@@ -59,7 +59,7 @@ TEST(ReuseSample, EstimatesMissesAndJumps) {
   EXPECT_GT(exact.jumps.misses(768), exact.all.accesses() / 10);
 }
 
-TEST(ReuseSample, TellsWhetherOneOfSomeLinesIsSampled) {
+TEST(ReuseSample, SaysWhetherOneOfSomeLinesIsSampled) {
   const auto is_sampled = [](Index line) { return sampled({line}, 3).all.accesses() > 0; };
   const ReuseSample sample(kLines, 3);
   Index first = 0;

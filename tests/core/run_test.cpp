@@ -151,7 +151,7 @@ class RunOptions : public testing::Test {
   GraphView small_view_ = test::view_of(small_);
 };
 
-TEST_F(RunOptions, TellsTheCallingThreadOfTheProgress) {
+TEST_F(RunOptions, ReportsProgressOnTheCallingThread) {
   const std::set<std::string_view> known{"check",   "graph", "coarsen", "eigenvector",
                                          "improve", "sort",  "move",    "metis"};
   int calls = 0;

@@ -94,7 +94,7 @@ TEST(CellsView, CountsCellsOfEveryLayout) {
   EXPECT_TRUE(CellsView::mixed(offsets, vertices).is_mixed());
 }
 
-TEST(Error, TellsItsKindAndPlace) {
+TEST(Error, HasItsKindAndPlace) {
   const InputError error(Location{"a.msh", 7, -1}, "no number", "expected 3");
   EXPECT_STREQ(error.what(), "a.msh:7: no number; expected 3");
   const Error& base = error;

@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(PartOf, CountsVerticesBehindTheLastPartToIt) {
+TEST(PartOf, CountsVerticesAfterTheLastPartToIt) {
   const std::vector<GlobalIndex> starts{0, 3, 3, 6};
   for (const auto& [vertex, part] : {std::pair{0, 0}, {2, 0}, {3, 2}, {5, 2}, {6, 2}, {90, 2}})
     EXPECT_EQ(part_of(vertex, starts), part) << vertex;

@@ -147,7 +147,7 @@ def test_maps_of_an_earlier_run_go(tmp_path):
 
 
 @pytest.mark.parametrize("options", [["-o", "b.e"], ["--ids", "keep"], ["--only", "volume"], ["--strict"]])
-def test_what_only_the_whole_mesh_tells_is_done_by_rank_0(tmp_path, options):
+def test_what_needs_the_whole_mesh_is_done_by_rank_0(tmp_path, options):
     write(tmp_path / "a.e", blocks=BLOCKS[:1])
     options = [tmp_path / option if option == "b.e" else option for option in options]
     done = launch(2, "order", tmp_path / "a.e", "--pieces", tmp_path / "p", "--json", *options)

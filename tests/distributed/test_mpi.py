@@ -134,7 +134,7 @@ def test_hilbert_gives_the_same_bits_on_every_number_of_ranks(tmp_path, ball):
     assert files[0] == files[1] == files[2] == files[3]
 
 
-def test_json_tells_of_parts_ranks_and_stages(tmp_path, ball):
+def test_json_has_parts_ranks_and_stages(tmp_path, ball):
     result = json.loads(order(3, ball, "-o", tmp_path / "a.vtu", "--parts", "6", "--json").stdout)
     expected = json.loads(serial("order", ball, "-o", tmp_path / "b.vtu", "--vertices", "spectral", "--json").stdout)
     assert result["ranks"] == 3 and result["parts"] == 6 and len(result["memory_bytes"]) == 3
@@ -364,7 +364,7 @@ def test_one_rank_started_by_mpirun_makes_one_piece(tmp_path, ball):
     assert len(os.listdir(tmp_path / "out")) == 2
 
 
-def test_one_process_has_to_be_told_how_many_pieces(tmp_path, ball):
+def test_one_process_needs_the_number_of_pieces(tmp_path, ball):
     done = launch(1, "order", ball, "--pieces", tmp_path / "out")
     assert done.returncode == 2 and "give --parts N, or start it with mpirun -n N" in own_lines(done)[0]
     assert os.listdir(tmp_path) == []
@@ -493,7 +493,7 @@ def test_one_process_makes_the_same_parts(tmp_path, ball):
 
 
 @pytest.mark.parametrize("size, rank", [("PMI_SIZE", "PMI_RANK"), ("SLURM_STEP_NUM_TASKS", "SLURM_PROCID")])
-def test_a_launcher_of_another_mpi_is_told(tmp_path, ball, size, rank):
+def test_a_launcher_of_another_mpi_is_reported(tmp_path, ball, size, rank):
     """Otherwise each process would order the mesh by itself and write the same file."""
     for k, lines in ((0, 1), (1, 0)):
         done = subprocess.run([MESHORDER, "order", ball, "-o", tmp_path / "out.vtu"], capture_output=True, text=True, check=False,

@@ -141,7 +141,7 @@ def test_options_that_differ_are_an_error_on_all_ranks(option, words):
     ("order_ranks(type('Comm', (), {'tompi4py': None})(), own, triangles)", "with .tompi4py()), not Comm"),
     ("order_parts(comm, own, triangles, places, partition='order')", "the partitions ptscotch, hilbert and rsb order each part"),
 ])
-def test_mistakes_are_told_in_a_line(call, words):
+def test_mistakes_are_reported_in_a_line(call, words):
     assert words in refused(f"meshorder.mpi.{call}")
 
 
@@ -160,7 +160,7 @@ assert (tetrahedra != triangles).any() and joined(tetrahedra, coordinates) == be
 """))
 
 
-def test_a_missing_library_is_told():
+def test_a_missing_library_is_reported():
     done = ranks(1, """
 try:
     meshorder.mpi.order_ranks(comm, own, triangles)

@@ -222,7 +222,7 @@ def test_what_fields_claim_is_limited(tmp_path):
 
 
 @pytest.mark.parametrize("offset", [10**6, 2**63 - 1])
-def test_fields_beyond_the_end_are_told(tmp_path, offset):
+def test_fields_beyond_the_end_are_reported(tmp_path, offset):
     write(tmp_path / "a.vtu", grid())
     moved = re.sub(rb'(<DataArray [^>]*Name="time"[^>]*offset=")\d+', lambda found: found[1] + str(offset).encode(),
                    (tmp_path / "a.vtu").read_bytes(), count=1)
@@ -340,7 +340,7 @@ def test_a_full_disk_leaves_the_old_pieces(tmp_path):
 
 
 @pytest.mark.parametrize("place", ["mixed", "last"])
-def test_interfaces_stand_behind_the_other_vertices_of_a_piece(tmp_path, ball, place):
+def test_interfaces_follow_the_other_vertices_of_a_piece(tmp_path, ball, place):
     done = order(3, ball, "--pieces", tmp_path, "--parts", "4", "--interface", place, "--json")
     partition = json.loads(done.stdout)["partition"]
     assert partition["interface"] == place and len(partition["interface_vertices"]) == 4

@@ -190,7 +190,7 @@ def test_a_fault_on_any_rank_ends_all_with_one_line(tmp_path, fault):
     assert os.listdir(tmp_path) == ["a.vtkhdf"]
 
 
-def test_a_file_that_is_cut_short_is_told(tmp_path):
+def test_a_file_that_is_cut_short_is_reported(tmp_path):
     whole = write(tmp_path / "a.vtkhdf").read_bytes()
     (tmp_path / "a.vtkhdf").write_bytes(whole[:len(whole) * 2 // 3])
     done = launch(2, "order", tmp_path / "a.vtkhdf", "-o", tmp_path / "b.vtkhdf")

@@ -43,7 +43,7 @@ def shown(name, failed, wrong):
 
 
 @pytest.mark.parametrize("name", cases.COMMANDS)
-def test_a_call_that_fails_is_told(tmp_path, name):
+def test_a_call_that_fails_is_reported(tmp_path, name):
     case = cases.case(name, tmp_path)
     failed, wrong = failures_of(case, 5, every_error=False)
     assert failed or name == "methods"
@@ -52,7 +52,7 @@ def test_a_call_that_fails_is_told(tmp_path, name):
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", cases.COMMANDS)
-def test_every_call_that_fails_is_told(tmp_path, name):
+def test_every_call_that_fails_is_reported(tmp_path, name):
     case = cases.case(name, tmp_path)
     failed, wrong = failures_of(case, 60, every_error=True)
     print(shown(name, failed, wrong))
@@ -85,7 +85,7 @@ def test_what_a_failing_disk_leaves_unread_is_no_mesh(tmp_path, name):
 @pytest.mark.parametrize("name", ("order with maps", "node in place", "xdmf in place", "simulate", "openfoam"))
 @pytest.mark.parametrize("bytes_", [0, 1, 100, 1000])
 @pytest.mark.parametrize("ignored", [False, True], ids=["SIGXFSZ", "EFBIG"])
-def test_a_limit_on_file_sizes_is_told(tmp_path, name, bytes_, ignored):
+def test_a_limit_on_file_sizes_is_reported(tmp_path, name, bytes_, ignored):
     case = cases.case(name, tmp_path)
 
     def limit():
@@ -141,7 +141,7 @@ def small_disk(tmp_path):
 
 
 @pytest.mark.parametrize("name", ("order with maps", "node in place", "xdmf in place", "simulate", "openfoam"))
-def test_a_full_disk_is_told(tmp_path, small_disk, name):
+def test_a_full_disk_is_reported(tmp_path, small_disk, name):
     """With each number of free pages, from 0 on, the disk becomes full at another file."""
     case = cases.case(name, tmp_path)
     case.folder = small_disk / "work"
@@ -161,7 +161,7 @@ def test_a_full_disk_is_told(tmp_path, small_disk, name):
     assert statuses[0] == 2
 
 
-def test_a_full_folder_for_temporary_files_is_told(tmp_path, small_disk, monkeypatch):
+def test_a_full_folder_for_temporary_files_is_reported(tmp_path, small_disk, monkeypatch):
     """Compressed CGNS files are unpacked into this folder for libcgns."""
     work = tmp_path / "work"
     work.mkdir()

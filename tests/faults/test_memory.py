@@ -45,7 +45,7 @@ def shown(name, failed, wrong, foreign):
 
 
 @pytest.mark.parametrize("name", cases.COMMANDS)
-def test_an_allocation_that_fails_is_told(tmp_path, name):
+def test_an_allocation_that_fails_is_reported(tmp_path, name):
     """Lets a few single allocations fail, then a few together with all later ones."""
     case = cases.case(name, tmp_path)
     places = places_of(case, name, 10)
@@ -58,7 +58,7 @@ def test_an_allocation_that_fails_is_told(tmp_path, name):
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", cases.COMMANDS)
-def test_every_allocation_that_fails_is_told(tmp_path, name):
+def test_every_allocation_that_fails_is_reported(tmp_path, name):
     case = cases.case(name, tmp_path)
     places = places_of(case, name, 4000)
     failed, wrong, foreign = failures_of(case, places)

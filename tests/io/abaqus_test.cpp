@@ -179,7 +179,7 @@ std::vector<std::string> sorted_lines(std::string_view text) {
   return result;
 }
 
-TEST(Abaqus, BeginsALineBehindALastLineWithoutItsEnd) {
+TEST(Abaqus, BeginsALineAfterALastLineWithoutItsEnd) {
   const std::string deck =
       "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*ELEMENT, TYPE=C3D4\n7, 1, 2, 3, 4\n*NODE";
   Mesh mesh = read_deck(deck);
@@ -668,7 +668,7 @@ TEST(Abaqus, NamesWhatOthersLose) {
                           HasSubstr("cards of the deck: *SURFACE, *MATERIAL")));
 }
 
-TEST(Abaqus, IsToldFromVegaByItsFirstBytes) {
+TEST(Abaqus, DiffersFromVegaInItsFirstBytes) {
   const auto is = [](std::string_view bytes) {
     const Format* const format = format_of_bytes(bytes);
     return format == nullptr ? "" : std::string(format->name);

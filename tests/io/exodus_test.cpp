@@ -154,7 +154,7 @@ TEST(Exodus, SetsMakeBlocksWhereThereAreNoLabels) {
   EXPECT_THAT(back.sets, Contains(EntitySet{"some", Association::cells, {place(3), place(4)}}));
 }
 
-TEST(Exodus, TellsWhatItCannotHold) {
+TEST(Exodus, ReportsWhatItCannotHold) {
   Mesh mesh = labelled();
   mesh.data = {
       {"word", Association::cells, 1, std::vector<std::string>{"a", "b", "c"}, {}, {}},
@@ -225,7 +225,7 @@ TEST(Exodus, NamesWithoutValuesGetNone) {
   test::expect_same(read_mesh(std::as_bytes(std::span(files.files.front().bytes))), mesh);
 }
 
-TEST(Exodus, TellsWhichNamesOfVariablesOfSetsChange) {
+TEST(Exodus, ReportsWhichNamesOfVariablesOfSetsChange) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "a.exo";
   write_two_blocks(path, [](exodus::NcOutput& file) {

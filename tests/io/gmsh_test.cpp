@@ -671,7 +671,7 @@ TEST(Gmsh, FindsItsEntitiesAgainAfterADetour) {
   EXPECT_EQ(set_of(again, "all of it").members, set_of(mesh, "all of it").members);
 }
 
-TEST(Gmsh, LeavesNothingBehindWhenTheTargetCannotBeWritten) {
+TEST(Gmsh, LeavesNoFileWhenTheTargetCannotBeWritten) {
   const TemporaryFolder folder;
   EXPECT_THROW(write_mesh(tetrahedral_bar(1), folder.path() / "absent" / "mesh.msh"), InputError);
   std::filesystem::create_directory(folder.path() / "mesh.msh");

@@ -85,7 +85,7 @@ TEST(KeepCells, KeepsTheCellsOfOneDimension) {
   test::expect_same(mesh, whole);
 }
 
-TEST(WriteMesh, LeavesOutCellsOfLowerDimensionsAndTellsTheirPlaces) {
+TEST(WriteMesh, LeavesOutCellsOfLowerDimensionsAndReturnsTheirPlaces) {
   const TemporaryFolder folder;
   const Mesh mesh = solid_with_boundary();
   for (const auto& [name, cells, first_places] :

@@ -186,7 +186,7 @@ TEST(MatrixMarket, OtherMeshesOfLinesAreMatrices) {
               HasSubstr("tetrahedron"));
 }
 
-TEST(MatrixMarket, IsToldByItsBytes) { EXPECT_EQ(format_of_bytes(kReal)->name, "MatrixMarket"); }
+TEST(MatrixMarket, IsKnownByItsBytes) { EXPECT_EQ(format_of_bytes(kReal)->name, "MatrixMarket"); }
 
 TEST(MetisGraph, ReadsEdgesOnceWithAllWeights) {
   const Mesh mesh = read_as("a.graph", kGraph);

@@ -179,7 +179,7 @@ TEST(Med, CutsNamesBetweenCharacters) {
   EXPECT_THAT(traction->component_names, ElementsAre("contrainte maxi", "y"));
 }
 
-TEST(Med, IsToldByItsBytesAndReadFromMemory) {
+TEST(Med, IsKnownByItsBytesAndReadFromMemory) {
   const MemoryFiles written = write_mesh_to_memory(tagged(), "med", "a.med");
   ASSERT_EQ(written.files.size(), 1U);
   const std::string& bytes = written.files.front().bytes;

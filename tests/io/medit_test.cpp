@@ -324,7 +324,7 @@ TEST(Medit, AnOrderingThatMakesNoSenseLeavesNodesAsTheyAre) {
   EXPECT_THAT(written(mesh), HasSubstr("\nTrianglesP2\n1\n1 4 2 6 5 3 7\n"));
 }
 
-TEST(Medit, TellsTheOrderOfNodesOfCellsFromOtherFormats) {
+TEST(Medit, ReordersTheNodesOfCellsFromOtherFormats) {
   Mesh mesh = test::cells_of_type(Shape::hexahedron, 27, 1);
   mesh.sets.clear();
   const std::string text = written(mesh);
@@ -427,7 +427,7 @@ TEST(Medit, CellsWithoutALabelGetZero) {
   EXPECT_THAT(notes, ElementsAre(HasSubstr("1 cells have no label")));
 }
 
-TEST(Medit, TellsOtherFormatsWhatTheyLose) {
+TEST(Medit, ReportsWhatOtherFormatsLose) {
   const TemporaryFolder folder;
   Mesh mesh = read(
       "MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0\n"

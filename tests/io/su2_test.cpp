@@ -185,7 +185,7 @@ TEST(Su2, KeepsTheValuesOfPeriodicBoundaries) {
   EXPECT_EQ(su2_of(read_su2(periodic)), periodic);
 }
 
-TEST(Su2, LeavesOutWhatStandsBehindCoordinates) {
+TEST(Su2, LeavesOutWhatFollowsCoordinates) {
   Notes notes;
   const Mesh mesh = read_su2(with(std::string(kPlane), "0 2.5 4", "0 2.5 0.1 4"), &notes);
   EXPECT_THAT(notes, ElementsAre(HasSubstr("points have more numbers than coordinates")));
@@ -387,7 +387,7 @@ TEST(Su2, ACutFileIsRefusedOrNoted) {
   }
 }
 
-TEST(Su2, IsToldByItsBytes) {
+TEST(Su2, IsKnownByItsBytes) {
   EXPECT_EQ(format_of_bytes(kPlane)->name, "SU2");
   EXPECT_EQ(format_of_bytes(kVolumes)->name, "SU2");
   EXPECT_EQ(format_of_bytes("NZONE=1\n")->name, "SU2");

@@ -315,7 +315,7 @@ TEST(TetGen, BringsSecondOrderNodesIntoVtksOrder) {
   EXPECT_EQ(unmarked(folder.path() / "out.ele"), "1  10  0\n1 1 2 3 4 5 6 7 8 9 10\n");
 }
 
-TEST(TetGen, TellsTheTwoOrdersOfSecondOrderFacesApart) {
+TEST(TetGen, DistinguishesTheTwoOrdersOfSecondOrderFaces) {
   for (const std::string face : {"1 0\n1 1 2 3 7 8 10\n", "1 0\n1 1 2 3 8 10 7\n"}) {
     SCOPED_TRACE(face);
     const TemporaryFolder folder;
@@ -484,7 +484,7 @@ TEST(TetGen, RefusesToMixWithFilesOfAnotherMesh) {
   EXPECT_THAT(folder.names(), ElementsAre("m.face"));
 }
 
-TEST(TetGen, LeavesNothingBehindWhereItCannotWrite) {
+TEST(TetGen, LeavesNoFileWhereItCannotWrite) {
   const TemporaryFolder folder;
   fs::create_directory(folder.path() / "m.ele");
   EXPECT_THAT(write_error(test::tetrahedral_bar(1), folder.path() / "m.node"), HasSubstr("m.ele"));

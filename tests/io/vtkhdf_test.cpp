@@ -139,7 +139,7 @@ TEST(VtkHdf, SoAreThoseOfFields) {
                           "the field '' is written as 'array'"));
 }
 
-TEST(VtkHdf, TellsWhatItHasNoPlaceFor) {
+TEST(VtkHdf, ReportsWhatItHasNoPlaceFor) {
   Mesh mesh = grid();
   mesh.data[1].component_names = {"x", "y"};
   mesh.data[2].values = std::vector<std::string>{"a", "b", "c"};
@@ -156,7 +156,7 @@ TEST(VtkHdf, TellsWhatItHasNoPlaceFor) {
   EXPECT_EQ(find_array(read, "big", Association::cells), nullptr);
 }
 
-TEST(VtkHdf, IsToldFromOtherFilesOfHdf5) {
+TEST(VtkHdf, DiffersFromOtherFilesOfHdf5) {
   for (const char* const format : {"vtkhdf", "med"}) {
     const MemoryFiles written = write_mesh_to_memory(test::tetrahedral_bar(1), format, "a");
     const Format* const found = format_of_bytes(written.files.front().bytes);

@@ -16,7 +16,7 @@ const std::vector<Index> kWedge{0, 1, 2, 3, 4, 5};
 const std::vector<Index> kTurnedWedge{0, 2, 1, 3, 5, 4};
 const std::vector<Index> kTetrahedron{3, 4, 5, 6};
 
-TEST(WedgeVote, GoesByTheVolumesOfTheWedgesWhereNothingElseTells) {
+TEST(WedgeVote, DecidesByTheVolumesOfTheWedgesWhereNothingElseDoes) {
   const std::vector<Point> points = points_of_prism(1);
   for (const bool turned : {false, true}) {
     WedgeVote vote(points);

@@ -398,7 +398,7 @@ TEST(Xdmf, ATruncatedFileIsAFaultOrTheSameMesh) {
   }
 }
 
-TEST(Xdmf, IsToldFromVtkByItsFirstElement) {
+TEST(Xdmf, DiffersFromVtkInItsFirstElement) {
   EXPECT_EQ(format_of_bytes(kMixed)->name, "XDMF");
   EXPECT_EQ(format_of_bytes("<Xdmf Version=\"3.0\">")->name, "XDMF");
   EXPECT_EQ(format_of_bytes("<?xml version=\"1.0\"?>\n<VTKFile><Xdmf>")->name, "VTU");

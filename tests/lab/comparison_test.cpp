@@ -56,7 +56,7 @@ TEST(Comparison, AddsTheSquaresOfBothIntervals) {
   EXPECT_DOUBLE_EQ(uneven->high, 23);
 }
 
-TEST(Comparison, TellsNothingApartWithoutIntervals) {
+TEST(Comparison, DistinguishesNothingWithoutIntervals) {
   EXPECT_FALSE(difference_of(speedup(10, 10, 10), speedup(20, 19, 21)));
   EXPECT_FALSE(difference_of(speedup(10, 9, 11), speedup(20, 20, 20)));
 }
@@ -109,7 +109,7 @@ TEST(Comparison, RefusesOtherMeshesScenariosAndPrecisions) {
             "b/results.json: has no scenario that was run; compare studies that `meshorder reproduce` made");
 }
 
-TEST(Comparison, TellsByFingerprintsOfMeshAndParameters) {
+TEST(Comparison, ComparesFingerprintsOfMeshAndParameters) {
   BothStudies both;
   both.a.results.scenarios[0].fingerprint = "0123456789abcdef5eed5eed5eed5eed";
   const auto said = [&](const char* fingerprint) -> std::string {

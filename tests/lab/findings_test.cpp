@@ -21,7 +21,7 @@ std::string finding(const StudyResults& results, const std::string& beginning) {
   return {};
 }
 
-TEST(Findings, LeaveToTheTableWhatItTells) {
+TEST(Findings, DoNotRepeatTheTable) {
   for (const std::string& sentence : findings_of(sample_results())) {
     EXPECT_EQ(sentence.find("Against"), std::string::npos) << sentence;
     EXPECT_EQ(sentence.find("The paper reports"), std::string::npos) << sentence;

@@ -52,7 +52,7 @@ TEST(MotionFile, TakesOnlyFramesOfAllVertices) {
   EXPECT_THROW(file.add(std::vector<Point>{{0, 0, 0}}), InvalidArgument);
 }
 
-TEST(MotionFile, LeavesNothingBehindWithoutACommit) {
+TEST(MotionFile, LeavesNoFileWithoutACommit) {
   const TemporaryFolder folder;
   { MotionFile(folder.path() / "a.npy", 1).add(std::vector<Point>{{0, 0, 0}}); }
   EXPECT_TRUE(folder.names().empty());

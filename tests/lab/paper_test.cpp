@@ -45,7 +45,7 @@ TEST(Paper, DerivedTimesAgreeWithThoseOfItsFirstCaptions) {
   EXPECT_NEAR(*paper_seconds("falling", "vf-fiedler"), 1846 - 514, 1);
 }
 
-TEST(Paper, TellsNothingOfWhatItsTextDoesNotHold) {
+TEST(Paper, SaysNothingThatItsTextDoesNotHold) {
   EXPECT_FALSE(paper_saving("falling", "vf-scrambled"));
   EXPECT_FALSE(paper_saving("falling", "scrambled"));
   EXPECT_FALSE(paper_seconds("falling", "vf-scrambled"));

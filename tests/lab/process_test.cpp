@@ -28,7 +28,7 @@ TEST(ChildProcess, AnswersLineByLine) {
   EXPECT_EQ(cat.receive(), "");
 }
 
-TEST(ChildProcess, TellsHowItEnded) {
+TEST(ChildProcess, ReportsHowItEnded) {
   const auto complaint = [](const std::string& script) {
     ChildProcess shell("/bin/sh", {"-c", script});
     try {

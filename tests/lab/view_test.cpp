@@ -140,7 +140,7 @@ TEST(SurfaceView, IsAsGoodFarFromTheOrigin) {
   EXPECT_NEAR(enclosed_volume(surface_view(moved, 400), ball), 4 * std::numbers::pi / 3, 0.3);
 }
 
-TEST(SurfaceView, BecomesSmallWhereTopologyStandsAgainstIt) {
+TEST(SurfaceView, BecomesSmallAgainstItsTopology) {
   // triangles without shared vertices, as in STL files
   const Mesh ball = make_ball({.size = 12});
   const SurfaceView whole = surface_view(ball, kAll);

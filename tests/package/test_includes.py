@@ -121,7 +121,7 @@ def test_folders_of_distributed_include_those_before_them():
 
 
 @pytest.mark.parametrize("folder, above", [("src", ("lab/", "apps/", "tests/")), ("lab", ("apps/", "tests/"))])
-def test_nothing_below_includes_what_stands_above(folder, above):
+def test_nothing_below_includes_what_is_above(folder, above):
     def target(path, header):
         beside = (path.parent / header).resolve()
         return str(beside.relative_to(ROOT)) if beside.exists() and ROOT in beside.parents else header

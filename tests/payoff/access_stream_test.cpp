@@ -207,7 +207,7 @@ struct Wanted {
   }
 };
 
-TEST(AccessStream, TellsAllThatIsWantedWhereItMayLeaveOutTheRest) {
+TEST(AccessStream, HasAllThatIsWantedWhereItMayLeaveOutTheRest) {
   for (const Mesh& mesh : meshes()) {
     const Prepared prepared(mesh);
     for (const Kernel kernel : kKernels) {

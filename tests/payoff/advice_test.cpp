@@ -212,7 +212,7 @@ TEST(Race, GoesToTheOrderThatIsThereAndThenToTheFirstOneWhereNoneIsMuchFaster) {
   EXPECT_EQ(winner_for(Workload::element, made_up({2, 2, 2, 2}, {2, 1.15, 2, 2}, {2, 1, 2, 2})), 1U);
 }
 
-TEST(KernelAdvice, TakesTheFastestCandidateAndTellsWhenItHasPaid) {
+TEST(KernelAdvice, TakesTheFastestCandidateAndSaysWhenItHasPaid) {
   const auto kernels = kernel_advice(made_up({2, 4, 30, 1}, {2, 2, 10, 2}, {1, 3, 15, 0.99}));
   EXPECT_EQ(kernels[kSpmv].candidate, 1U);
   EXPECT_DOUBLE_EQ(kernels[kSpmv].factor, 2);

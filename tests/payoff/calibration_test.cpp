@@ -208,14 +208,14 @@ TEST(Calibration, RunsMoveCostsAwayFromKnownOnes) {
   EXPECT_LT(fitted.costs.miss[1], 1.2);
 }
 
-TEST(Calibration, LatenciesBehindSizesAreThoseOfTheNextLevels) {
+TEST(Calibration, LatenciesBeyondSizesAreThoseOfTheNextLevels) {
   const FoundCaches found{.levels = {{30 << 10, 1.0}, {1100 << 10, 4.0}, {16 << 20, 24.0}},
                           .memory_nanoseconds = 124};
-  EXPECT_EQ(latencies_behind(found, parse_cache_sizes("32K,1M,16M")), (Latencies{3, 20, 50, 50}));
+  EXPECT_EQ(latencies_beyond(found, parse_cache_sizes("32K,1M,16M")), (Latencies{3, 20, 50, 50}));
   // the level of 1 MB is found, but is no cache of the cost model
-  EXPECT_EQ(latencies_behind(found, parse_cache_sizes("32K,16M")), (Latencies{3, 120, 1, 1}));
+  EXPECT_EQ(latencies_beyond(found, parse_cache_sizes("32K,16M")), (Latencies{3, 120, 1, 1}));
   EXPECT_EQ(
-      latencies_behind({.levels = {{32 << 10, 2.0}}, .memory_nanoseconds = 2.5}, parse_cache_sizes("32K")),
+      latencies_beyond({.levels = {{32 << 10, 2.0}}, .memory_nanoseconds = 2.5}, parse_cache_sizes("32K")),
       (Latencies{1, 1, 1, 1}));
 }
 

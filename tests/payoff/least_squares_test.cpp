@@ -72,7 +72,7 @@ TEST(LeastSquares, NoChoiceOfUnknownsLeavesLess) {
   }
 }
 
-TEST(LeastSquares, UnknownsThatNothingTellsAreZero) {
+TEST(LeastSquares, UnknownsWithoutDataAreZero) {
   Rows rows{.columns = 3};
   for (const double t : {1.0, 2.0, 3.0}) rows.push_back(std::vector{t, 0.0, t});
   const std::vector<double> x = non_negative_least_squares(rows, std::vector{2.0, 4.0, 6.0});

@@ -29,7 +29,7 @@ Mesh scrambled_grid(Index size) {
   return mesh;
 }
 
-TEST(PublicAdvise, TellsWhatAScrambledGridCouldGain) {
+TEST(PublicAdvise, SaysWhatAScrambledGridCouldGain) {
   const Mesh mesh = scrambled_grid(26);
   const Advice advice = advise(view(mesh));
   EXPECT_EQ(advice.as_is.vertices.name, "original");

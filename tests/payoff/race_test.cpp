@@ -94,7 +94,7 @@ TEST(Race, TimesWhatAutoTakesAndTwoOthersForHalfASecondEach) {
   }
 }
 
-TEST(Race, TellsOfTimesThatAreNotToBeTrusted) {
+TEST(Race, ReportsTimesThatAreNotReliable) {
   EXPECT_THAT(raced({8, 4, 2, 5}, Workload::spmv, 0.5).advice.doubt, HasSubstr("50"));
 }
 
@@ -157,7 +157,7 @@ TEST(Race, LeavesOutOrdersByCoordinatesForAMatrixWithoutThem) {
   EXPECT_THAT(orders(), testing::Contains(HasSubstr("hilbert")));
 }
 
-TEST(Race, RefusesWhatNoKernelTells) {
+TEST(Race, RefusesWhatNoKernelMeasures) {
   for (const Workload workload : {Workload::fill, Workload::bandwidth}) {
     const auto message = testing::StartsWith("race: no kernel measures ");  // before any work
     EXPECT_THAT([&] { (void)raced({}, workload); }, testing::ThrowsMessage<InvalidArgument>(message));

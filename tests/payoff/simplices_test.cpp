@@ -107,7 +107,7 @@ TEST(CutIntoSimplices, TakesCornersOfTheHighestCellsInTheirOrder) {
   EXPECT_EQ(std::vector<Index>(simplices.vertices.begin() + 48, simplices.vertices.begin() + 52), quadratic);
 }
 
-TEST(CutIntoSimplices, TellsTheCellOfEachSimplex) {
+TEST(CutIntoSimplices, ReturnsTheCellOfEachSimplex) {
   const Mesh mesh = test::mixed_mesh();
   const Simplices simplices = cut_into_simplices(mesh);
   ASSERT_EQ(static_cast<Offset>(simplices.cells.size()), simplices.size());

@@ -59,7 +59,7 @@ TEST(SteadinessWatch, TakesMediansAndShares) {
   EXPECT_GE(watch.result().pace, 0);
 }
 
-TEST(ThreadStopwatch, StandsStillWhileTheThreadSleeps) {
+TEST(ThreadStopwatch, StopsWhileTheThreadSleeps) {
   const Stopwatch stopwatch;
   const ThreadStopwatch thread;
   std::this_thread::sleep_for(std::chrono::milliseconds(30));

@@ -488,7 +488,7 @@ TEST(BackwardEuler, ForcesActFromTheirStartToTheirEnd) {
   }
 }
 
-TEST(BackwardEuler, PrescribedVerticesMoveAsTheyAreTold) {
+TEST(BackwardEuler, PrescribedVerticesMoveAsPrescribed) {
   const auto [points, body] = box({3, 1, 1}, {3, 1, 1}, MaterialModel::corotational);
   ImplicitOptions options = tight();
   options.gravity = {0, 0, -9.81};

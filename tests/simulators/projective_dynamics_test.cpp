@@ -320,7 +320,7 @@ TEST(ProjectiveDynamics, ItsResidualIsNoLessThanWhatElementsLeave) {
   EXPECT_LT(equal, 10);  // … but not in all
 }
 
-TEST(ProjectiveDynamics, PrescribedVerticesMoveAsTheyAreTold) {
+TEST(ProjectiveDynamics, PrescribedVerticesMoveAsPrescribed) {
   const auto [points, body] = projective_box({3, 1, 1}, {1, 0.5, 0.5}, LocalModel::neo_hookean);
   ProjectiveOptions options;
   options.gravity = {0, -9.81, 0};

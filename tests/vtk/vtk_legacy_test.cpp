@@ -474,7 +474,7 @@ TEST(VtkLegacy, WedgesOfVtkArriveInGmshTheRightWayRoundAndStayInVtk) {
   }
 }
 
-TEST(VtkLegacy, WedgesOfLaterVersionsOfVtkAreToldByTheirVolumes) {
+TEST(VtkLegacy, WedgesOfLaterVersionsOfVtkAreKnownByTheirVolumes) {
   const TemporaryFolder folder;
   const auto grid = grid_of_wedges(true);
   write_with_vtk(grid, folder.path() / "a.vtk", true, 51);

@@ -400,7 +400,7 @@ TEST(Vtu, WedgesOfVtkArriveInGmshTheRightWayRoundAndStayInVtk) {
   }
 }
 
-TEST(Vtu, WedgesOfLaterVersionsOfVtkAreToldByTheirVolumes) {
+TEST(Vtu, WedgesOfLaterVersionsOfVtkAreKnownByTheirVolumes) {
   const TemporaryFolder folder;
   const auto grid = grid_of_wedges(true);
   write_with_vtk(grid, folder.path() / "a.vtu", all_encodings().front());

@@ -25,8 +25,8 @@ struct PredictionError {
   double median = 0;          ///< the middle error, or the mean of the two middle errors
   double of_nine_tenths = 0;  ///< the smallest number that nine tenths of the errors do not exceed
   double largest = 0;
-  int pairs = 0;             ///< of orders of a mesh whose measured times differ by more than 10 %
-  int pairs_told_right = 0;  ///< pairs whose faster order was predicted
+  int pairs = 0;                  ///< of orders of a mesh whose measured times differ by more than 10 %
+  int pairs_predicted_right = 0;  ///< pairs whose faster order was predicted
 };
 
 /// Returns the error of the predictions of `kKernels[kernel]`. O(orders² · meshes).

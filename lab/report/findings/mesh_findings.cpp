@@ -29,8 +29,8 @@ void count_pairs(const MeshRecord& mesh, std::size_t kernel, PredictionError& er
       const double apart = a_slower ? a.measured_ms / b.measured_ms : b.measured_ms / a.measured_ms;
       if (apart <= kApart) continue;
       ++error.pairs;
-      const bool told = a_slower ? a.predicted_ms > b.predicted_ms : b.predicted_ms > a.predicted_ms;
-      error.pairs_told_right += told ? 1 : 0;
+      const bool right = a_slower ? a.predicted_ms > b.predicted_ms : b.predicted_ms > a.predicted_ms;
+      error.pairs_predicted_right += right ? 1 : 0;
     }
   }
 }
@@ -105,11 +105,11 @@ std::string misses_in_words(const StudyResults& results) {
 std::string predictions_in_words(const StudyResults& results) {
   std::vector<std::string> parts;
   int pairs = 0;
-  int told_right = 0;
+  int predicted_right = 0;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     const PredictionError error = prediction_error(results, k);
     pairs += error.pairs;
-    told_right += error.pairs_told_right;
+    predicted_right += error.pairs_predicted_right;
     if (error.speedups > 0)
       parts.push_back(fmt::format("{:.0f} % for {}", 100 * error.median, kKernelTitles[k]));
   }
@@ -120,7 +120,7 @@ std::string predictions_in_words(const StudyResults& results) {
     words += fmt::format(
         "; of {} pairs of orders that are more than 10 % apart, {} are predicted the right way "
         "round",
-        pairs, told_right == pairs ? "all" : std::to_string(told_right));
+        pairs, predicted_right == pairs ? "all" : std::to_string(predicted_right));
   }
   return words + ".";
 }

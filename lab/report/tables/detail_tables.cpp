@@ -203,7 +203,7 @@ Table prediction_table(const StudyResults& results) {
     if (error.speedups == 0) continue;
     table.rows.push_back({text_cell(std::string(kKernelTitles[k])), count_cell(error.speedups),
                           number_cell(100 * error.median, 2), number_cell(100 * error.of_nine_tenths, 2),
-                          number_cell(100 * error.largest, 2), count_cell(error.pairs_told_right),
+                          number_cell(100 * error.largest, 2), count_cell(error.pairs_predicted_right),
                           count_cell(error.pairs)});
   }
   return table;

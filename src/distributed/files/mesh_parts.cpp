@@ -136,15 +136,15 @@ void MeshParts::find_sharing_parts(const Communicator& communicator, const Share
       shared.end_row();
     }
   });
-  const Rows told = send_rows(communicator, std::move(shared), std::move(dispatches));
+  const Rows received = send_rows(communicator, std::move(shared), std::move(dispatches));
   communicator.together([&] {
     // the vertices of the rows ascend from row to row
     Incidence all;
     all.vertex_count = parts_of_vertices_.vertex_count;
     Offset row = 0;
     for (Index v = 0; v < index_size(numbers.vertices); ++v) {
-      if (row < told.size() && told[row].front() == numbers.vertices[v]) {
-        for (const GlobalIndex part : told[row++].subspan(1))
+      if (row < received.size() && received[row].front() == numbers.vertices[v]) {
+        for (const GlobalIndex part : received[row++].subspan(1))
           all.vertices.push_back(static_cast<Index>(part));
       } else {
         const auto own = parts_with(v);
