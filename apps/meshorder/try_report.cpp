@@ -61,7 +61,7 @@ std::string undecided_in_words(const TrialReport& report, std::size_t best) {
       nearest_in_words(report, best), budget);
 }
 
-constexpr int kTryBarWidth = 24;
+constexpr int kBarWidth = 24;
 
 std::string memory_cell(std::int64_t bytes) {
   constexpr double kMega = 1e6;
@@ -209,7 +209,7 @@ void print_trial(const Console& console, const TrialReport& report) {
       console.print("{:<20} {:>9} {:>7.3f} {:>11} {:>5}{} {:>9}  {}", name, time_in_words(report, i),
                     speedup.ratio, interval_in_words(speedup), order.times.size(),
                     has_counts ? fmt::format(" {:>8.6g}", order.count) : "", memory_cell(order.peak_bytes),
-                    bar(time_of(report, i) / longest, kTryBarWidth));
+                    bar(time_of(report, i) / longest, kBarWidth));
     }
   }
 }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostFiles = 10000;
 constexpr std::size_t kMostNested = 16;
-constexpr std::size_t kDeckLineBytes = 64;  // assumed length of a line, to estimate how many lines follow
+constexpr std::size_t kLineBytes = 64;  // assumed length of a line, to estimate how many lines follow
 
 }  // namespace
 
@@ -57,14 +57,13 @@ Index DeckLines::lines_to_take() {
   OpenFile& file = files_.back();
   const std::int64_t byte = file.scanner->byte();
   if (byte < file.next_try || file.has_other_blanks) return 0;
-  const std::string_view ahead =
-      rest().substr(0, kDeckLineBytes * static_cast<std::size_t>(file.lines_at_once));
+  const std::string_view ahead = rest().substr(0, kLineBytes * static_cast<std::size_t>(file.lines_at_once));
   const std::size_t bytes = std::min(ahead.size(), ahead.find('*'));
   if (bytes < kFewBytes) {
     file.next_try = byte + static_cast<std::int64_t>(bytes);
     return 0;
   }
-  return static_cast<Index>(bytes / kDeckLineBytes);
+  return static_cast<Index>(bytes / kLineBytes);
 }
 
 Index DeckLines::take_regular(Index most,
@@ -83,7 +82,7 @@ Index DeckLines::take_regular(Index most,
   const Index taken = read_regular_records(*file.scanner, most, read, kPartBytes);
   if (taken < most) {
     file.next_try = file.scanner->byte() + static_cast<std::int64_t>(kPartBytes);
-    file.lines_at_once = std::max(file.lines_at_once / 2, static_cast<Index>(kPartBytes / kDeckLineBytes));
+    file.lines_at_once = std::max(file.lines_at_once / 2, static_cast<Index>(kPartBytes / kLineBytes));
   } else {
     file.lines_at_once = std::min(2 * file.lines_at_once, kMostLines);
   }
