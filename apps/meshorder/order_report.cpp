@@ -3,6 +3,7 @@
 
 #include "mesh/graphs.hpp"
 #include "ordering/judgement.hpp"
+#include "ordering/method.hpp"
 #include "payoff/quantities.hpp"
 #include "wording.hpp"
 

@@ -46,11 +46,6 @@ bool sweeps_over_rows(Workload workload) {
 
 }  // namespace
 
-Workload made_for(std::string_view method) {
-  if (method == "rcm") return Workload::bandwidth;
-  return method == "metis-nd" ? Workload::fill : Workload::all;
-}
-
 std::string reason_to_keep(GraphRef graph, const Permutation& order, std::string_view method,
                            Workload workload) {
   const Permutation as_is = Permutation::identity(graph.size());

@@ -12,9 +12,6 @@
 
 namespace meshorder {
 
-/// Returns the workload by which to judge a method that was requested by name.
-Workload made_for(std::string_view method);
-
 /// Judges an order by the figure for the workload: the bandwidth, the entries of the Cholesky factor, the
 /// sectors that a product reads on a graphics processor, or else the edge spans. The bandwidth and the
 /// entries must fall, sectors by at least 10 %. The mean or the geometric mean of the spans must fall by at

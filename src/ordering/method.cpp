@@ -14,19 +14,25 @@
 namespace meshorder {
 namespace {
 
-struct BuiltInVertexMethod {
-  std::string_view name;
-  std::string_view description;
-  Order (*order)(const VertexInput&, const OrderOptions&);
+/// What other code has to know of a method.
+struct Traits {
   bool needs_points = false;
+  bool is_reversible = false;
+  Workload made_for = Workload::all;
 };
+constexpr Traits kOfPoints{.needs_points = true};
+constexpr Traits kReversible{.is_reversible = true};
+constexpr Traits kAlongCurve{.needs_points = true, .is_reversible = true};
 
-struct BuiltInElementMethod {
+template <class Input>
+struct BuiltInMethod {
   std::string_view name;
   std::string_view description;
-  Order (*order)(const ElementInput&, const OrderOptions&);
-  bool needs_points = false;
+  Order (*order)(const Input&, const OrderOptions&);
+  Traits traits = {};
 };
+using BuiltInVertexMethod = BuiltInMethod<VertexInput>;
+using BuiltInElementMethod = BuiltInMethod<ElementInput>;
 
 /// Orders by a method, then renumbers the chunks of that order breadth first: see `in_fronts`.
 template <Order (*Method)(const VertexInput&, const OrderOptions&)>
@@ -43,18 +49,20 @@ constexpr std::array kVertexMethods{
     BuiltInVertexMethod{"scrambled", "a seeded random order, the paper's point of reference",
                         scrambled_vertices},
     BuiltInVertexMethod{"fiedler", "sorted by the Fiedler vector of the vertex graph, the paper's order",
-                        fiedler_vertices},
+                        fiedler_vertices, kReversible},
     BuiltInVertexMethod{"minla", "the Fiedler order, improved towards the least sum of edge spans",
-                        minla_vertices},
+                        minla_vertices, kReversible},
     BuiltInVertexMethod{"spectral", "cut along Fiedler vectors again and again, down to a few vertices",
                         spectral_vertices},
     BuiltInVertexMethod{"rcm", "reverse Cuthill-McKee: breadth first, neighbours by degree, reversed",
-                        rcm_vertices},
+                        rcm_vertices, Traits{.made_for = Workload::bandwidth}},
     BuiltInVertexMethod{"bfs", "breadth first from a vertex at the rim", bfs_vertices},
-    BuiltInVertexMethod{"morton", "along Morton's Z curve through the coordinates", morton_vertices, true},
-    BuiltInVertexMethod{"hilbert", "along Hilbert's curve through the coordinates", hilbert_vertices, true},
+    BuiltInVertexMethod{"morton", "along Morton's Z curve through the coordinates", morton_vertices,
+                        kAlongCurve},
+    BuiltInVertexMethod{"hilbert", "along Hilbert's curve through the coordinates", hilbert_vertices,
+                        kAlongCurve},
     BuiltInVertexMethod{"hilbert-fronts", "hilbert, then breadth first within each 2,048 vertices",
-                        then_fronts<hilbert_vertices>, true},
+                        then_fronts<hilbert_vertices>, kOfPoints},
     BuiltInVertexMethod{"spectral-fronts", "spectral, then breadth first within each 2,048 vertices",
                         then_fronts<spectral_vertices>},
     BuiltInVertexMethod{"minla-fronts", "minla, then breadth first within each 2,048 vertices",
@@ -63,7 +71,7 @@ constexpr std::array kVertexMethods{
                         then_fronts<fiedler_vertices>},
 #ifdef MESHORDER_HAS_METIS
     BuiltInVertexMethod{"metis-nd", "METIS nested dissection, made for sparse factorisation",
-                        metis_nd_vertices},
+                        metis_nd_vertices, Traits{.made_for = Workload::fill}},
     BuiltInVertexMethod{"metis-rb", "METIS recursive bisection down to a few vertices", metis_rb_vertices},
 #endif
 };
@@ -85,7 +93,8 @@ constexpr std::array kElementMethods{
     BuiltInElementMethod{"max", "by the largest rank of their vertices", max_elements},
     BuiltInElementMethod{"lexmax", "by the ranks of their vertices, largest first, compared like words",
                          lexmax_elements},
-    BuiltInElementMethod{"hilbert", "along Hilbert's curve through their centroids", hilbert_elements, true},
+    BuiltInElementMethod{"hilbert", "along Hilbert's curve through their centroids", hilbert_elements,
+                         kOfPoints},
 };
 
 /// Returns the built-in method of that name, or null.
@@ -112,7 +121,7 @@ template <class Method>
 MethodInfo info_of(const Method& method) {
   return {.name = std::string(method.name),
           .description = std::string(method.description),
-          .needs_points = method.needs_points};
+          .needs_points = method.traits.needs_points};
 }
 
 /// Moves vertices without neighbours after the others, in their old order.
@@ -140,7 +149,8 @@ Order order_graph(std::string_view method, const VertexInput& input, const Order
   report("sort");
   Order result;
   if (const BuiltInVertexMethod* found = find_method(kVertexMethods, method)) {
-    if (found->needs_points) check_points(input.points, static_cast<std::size_t>(input.graph.size()), method);
+    if (found->traits.needs_points)
+      check_points(input.points, static_cast<std::size_t>(input.graph.size()), method);
     result = found->order(input, options);
     const bool stays = found->order == original_vertices || result.method.name == "original";  // by `auto`
     if (!stays) {
@@ -160,7 +170,7 @@ Order order_incidence(std::string_view method, const ElementInput& input, const 
   report("sort");
   Order result;
   if (const BuiltInElementMethod* found = find_method(kElementMethods, method)) {
-    if (found->needs_points)
+    if (found->traits.needs_points)
       check_points(input.points, static_cast<std::size_t>(input.elements.vertex_count), method);
     result = found->order(input, options);
   } else if (const ElementMethod registered = registered_element_method(method)) {
@@ -172,6 +182,16 @@ Order order_incidence(std::string_view method, const ElementInput& input, const 
   }
   if (result.method.name.empty()) result.method.name = method;
   return result;
+}
+
+bool is_reversible(std::string_view method) {
+  const BuiltInVertexMethod* const found = find_method(kVertexMethods, method);
+  return found != nullptr && found->traits.is_reversible;
+}
+
+Workload made_for(std::string_view method) {
+  const BuiltInVertexMethod* const found = find_method(kVertexMethods, method);
+  return found != nullptr ? found->traits.made_for : Workload::all;
 }
 
 std::vector<MethodInfo> built_in_vertex_methods() {

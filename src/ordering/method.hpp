@@ -46,6 +46,12 @@ Order order_graph(std::string_view method, const VertexInput& input, const Order
 /// Orders elements by the method of that name; throws as `order_graph`.
 Order order_incidence(std::string_view method, const ElementInput& input, const OrderOptions& options = {});
 
+/// Returns whether the reverse of the method's orders is as good; false for registered methods.
+bool is_reversible(std::string_view method);
+
+/// Returns the workload by which to judge a vertex method that was requested by name.
+Workload made_for(std::string_view method);
+
 /// Returns the vertex method that measurements favour for this graph and workload: never `auto` itself, and a
 /// method that needs coordinates only if coordinates distinguish the vertices. docs/auto.md has the evidence.
 /// O(n).

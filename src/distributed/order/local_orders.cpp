@@ -7,7 +7,6 @@
 #include "ordering/method.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <span>
@@ -15,9 +14,6 @@
 
 namespace meshorder::distributed {
 namespace {
-
-/// Methods whose order is equally good in reverse.
-constexpr std::array<std::string_view, 4> kReversible{"fiedler", "minla", "hilbert", "morton"};
 
 // A vertex as it is sent to the rank of its part: a row of these entries, followed by its neighbours in the
 // part.
@@ -120,8 +116,7 @@ std::vector<Index> places_in(const LocalPart& part, std::string_view method, Int
     return order_graph(method, {.graph = part.graph, .points = part.points, .pull = part.pull}, options);
   });
   std::vector<Index> places(order.permutation.old_to_new().begin(), order.permutation.old_to_new().end());
-  const bool is_reversible = std::find(kReversible.begin(), kReversible.end(), method) != kReversible.end();
-  if (is_reversible && is_the_wrong_way_round(places, part.pull)) {
+  if (is_reversible(method) && is_the_wrong_way_round(places, part.pull)) {
     for (Index& place : places) place = index_size(places) - 1 - place;
   }
   if (interface_place == InterfacePlace::last) put_interface_last(places, part.is_interface);
