@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Triangulates sets of points for `meshorder simulate splash` until its input ends.
+// Triangulates sets of points for `meshorder simulate splash` until the end of the input.
 //
 // Reads, in the machine's byte order, a number n (8 bytes), then n points of three doubles. Writes:
 // - the number m of tetrahedra (8 bytes);

@@ -51,7 +51,7 @@ void list(const Common& common) {
   console.print_json({{"models", models}});
 }
 
-/// Adds to the options after `make` those that were given before it; both have the same meaning.
+/// Adds the options given before `make` to those given after it; both have the same meaning.
 void add_options_before(const Common& common, MakeArguments& arguments) {
   arguments.json = arguments.json || common.json;
   arguments.quiet = arguments.quiet || common.quiet;

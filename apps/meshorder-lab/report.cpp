@@ -54,10 +54,10 @@ std::vector<OrderingSpec> orderings_of_report() {
           {"scrambled", "Scrambled", "scrambled", "scrambled"}};
 }
 
-/// Returns whether another order has the same vertices and other elements; for a matrix the two are equal.
+/// Returns whether an order differs from another one only in its elements; for a matrix, the two are equal.
 bool orders_elements(const OrderingSpec& ordering) { return ordering.name == "vf-fiedler"; }
 
-/// Returns the predicted and measured times of an order, as `info` takes them.
+/// Returns the predicted times of an order, and its measured times if all kernels have them.
 OrderCosts costs_of(const MeshOrderRecord& order, std::size_t kernels) {
   OrderCosts costs;
   costs.predicted.emplace();

@@ -72,7 +72,7 @@ void refuse_for_fluids(const SimulateArguments& arguments) {
   }
 }
 
-/// Returns the scenario with the replacements of the command line.
+/// Returns the scenario with its values replaced by those of the command line.
 Scenario scenario_of(const SimulateArguments& arguments) {
   Scenario scenario = find_scenario(arguments.scenario);
   if (scenario.is_fluid()) refuse_for_fluids(arguments);

@@ -31,13 +31,13 @@ StepReport sums(const MotionRecord& record) {
   return sum;
 }
 
-/// Returns the time of a step that no field except `total` contains.
+/// Returns the part of `total` that no other field contains.
 double other(const StepReport::Seconds& seconds) {
   return seconds.total - seconds.assembly - seconds.solve - seconds.local - seconds.global -
          seconds.collision - seconds.triangulation - seconds.order - seconds.motion;
 }
 
-/// Returns the smallest and the largest value of a number over the steps; there must be a step.
+/// Returns the smallest and the largest value of a field over the steps; there must be a step.
 template <class Number>
 std::pair<Number, Number> range(const MotionRecord& record, Number StepReport::*number) {
   Number lowest = record.steps.front().report.*number;
@@ -49,7 +49,7 @@ std::pair<Number, Number> range(const MotionRecord& record, Number StepReport::*
   return {lowest, highest};
 }
 
-/// Returns a list with the value of a number in every step.
+/// Returns a list with the value of a field in every step.
 template <class Number>
 nlohmann::ordered_json each(const MotionRecord& record, Number StepReport::*number) {
   auto list = nlohmann::ordered_json::array();

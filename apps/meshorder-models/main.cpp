@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// meshorder-models: makes the surfaces from which TetGen fills the study's models.
+// meshorder-models: makes the surfaces of the study's models, which TetGen fills with tetrahedra.
 // Like meshorder-delaunay, it uses CGAL's GPL parts; README.md has the recipes.
 #include "surface.hpp"
 

@@ -81,7 +81,7 @@ std::string read_text(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) {
     throw InputError(fmt::format("{}: no such file; give an OFF file of triangles", file.string()));
   }
-  std::ifstream in(file, std::ios::binary);  // opened directly: this program does not link the library
+  std::ifstream in(file, std::ios::binary);  // opened directly: this program does not link libmeshorder
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in.is_open() || in.bad()) {
     throw InputError(fmt::format("{}: cannot be read; make it readable", file.string()));
@@ -104,7 +104,7 @@ Surface read_off(const std::filesystem::path& file) {
   const auto n_faces = lines.number<std::uint32_t>("a number of faces");
   if (n_points < 3 || n_faces < 1) lines.fail("the surface is empty", "at least one triangle is needed");
 
-  // a vertex or a face takes six bytes or more, so a false count cannot make this large
+  // a vertex or a face takes six bytes or more, so a false count cannot reserve much memory
   Surface surface;
   surface.points.reserve(std::min<std::size_t>(n_points, text.size() / 6));
   surface.triangles.reserve(std::min<std::size_t>(n_faces, text.size() / 6));

@@ -9,7 +9,7 @@
 
 namespace meshorder::models {
 
-/// An input cannot be used; the message names the file, what is wrong and what would be right.
+/// Exception: an input cannot be used; the message names the file, the fault and what would be right.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -42,16 +42,16 @@ void write_off(const std::filesystem::path& file, const Surface& surface);
 struct WrapOptions {
   double alpha_ratio = 200;  ///< diagonal / alpha; alpha bounds the size of the wrap's triangles
   double offset_ratio =
-      2500;  ///< diagonal / offset; the wrap stays at about that distance outside the surface
+      2500;  ///< diagonal / offset, which is about the distance of the wrap outside the surface
 };
 
 /// Returns a closed, oriented, manifold surface without self-intersections around the given triangles,
 /// which may intersect each other and leave holes smaller than alpha.
 ///
-/// The same input gives the same output in every run.
-/// Throws `InputError` if all triangles are degenerate, or if the size of their box is not in 1e-100 … 1e100.
-/// CGAL's alpha wrap: Portaneri et al., "Alpha wrapping with an offset", ACM TOG 41(4), 2022.
-/// Time and memory grow with the square of `alpha_ratio`.
+/// The same input gives the same output in every run. Throws `InputError` if all triangles are degenerate, or
+/// if the size of their box is not in 1e-100 … 1e100; `std::runtime_error` if the wrap is empty. CGAL's alpha
+/// wrap: Portaneri et al., "Alpha wrapping with an offset", ACM TOG 41(4), 2022. Time and memory grow with
+/// the square of `alpha_ratio`.
 Surface wrap(const Surface& surface, const WrapOptions& options);
 
 }  // namespace meshorder::models

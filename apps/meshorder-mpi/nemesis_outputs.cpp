@@ -68,7 +68,7 @@ std::vector<std::string> NemesisOutputs::open(Index parts) {
 }
 
 void NemesisOutputs::add_to(OutputSet& set) {
-  // a reader would not notice that pieces come from two runs
+  // removed before new pieces are in place: a reader would not notice that pieces come from two runs
   set.remove_first(FilePath::derived(names_.front()));
   for (const fs::path& old : old_pieces()) {
     if (std::find(names_.begin(), names_.end(), old.string()) == names_.end())

@@ -119,11 +119,11 @@ void require_points_of(const Communicator& communicator, const Mesh& mesh, const
   });
 }
 
-/// Returns the head of the input if all ranks can read it in parts, and nothing in these cases:
+/// Returns the head of the input if all ranks can read it in parts; nothing if they cannot or if
 /// - the input is not a .vtu, .vtkhdf or .xdmf file;
 /// - the output has another extension than the input;
 /// - rank 0 has to read and write;
-/// - maps are wanted, and there is no output or a Mesh would have the nodes of some cells in another order;
+/// - maps are wanted without an output, or for cells whose nodes have another order in a Mesh;
 /// - pieces of an .xdmf file, or pieces in Nemesis, are wanted.
 std::optional<FileHead> head_of(const Communicator& communicator, const Arguments& arguments) {
   const auto extension = [](const std::string& name) { return std::filesystem::path(name).extension(); };
@@ -140,8 +140,8 @@ std::optional<FileHead> head_of(const Communicator& communicator, const Argument
   return head;
 }
 
-/// Returns the input if it is an Exodus file that all ranks can read in parts, and if the run writes only
-/// pieces, perhaps with maps.
+/// Returns the input if it is an Exodus file that all ranks can read in parts, rank 0 need not read and
+/// write, and the run writes only pieces, perhaps with maps.
 std::optional<ExodusSlices> exodus_slices_of(const Communicator& communicator, const Arguments& arguments) {
   if (!arguments.output.empty() || needs_root(arguments)) return std::nullopt;
   std::optional<ExodusSlices> slices = ExodusSlices::open(communicator, arguments.input);
@@ -167,7 +167,7 @@ std::int64_t peak_memory() {
 
 /// Prints the report on an order, without the files.
 ///
-/// @param stored  null if the mesh is not a matrix
+/// @param stored  null unless the mesh is a matrix or graph
 void print_report(const Console& console, const DistributedOptions& options, const DistributedReport& report,
                   const std::vector<std::int64_t>& peaks, const StoredMatrix* stored) {
   const bool is_matrix = stored != nullptr && !stored->is_graph;

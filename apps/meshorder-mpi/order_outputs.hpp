@@ -24,8 +24,8 @@ struct OrderFiles : MeshFiles {
   std::string pieces;  ///< folder, a .vtkhdf file, or a name of Exodus II; empty: no pieces
   int ghosts = 1;      ///< layers of ghost cells in pieces, 0 or 1
 
-  /// Returns the files with an output, whose extension sets the format. If there is none, `output` becomes a
-  /// name with the extension of the pieces.
+  /// Returns the files. Without an output, `output` becomes a name with the extension of the pieces, which
+  /// sets the format.
   [[nodiscard]] MeshFiles with_output() const;
   /// Returns whether the pieces are the partitions of one file.
   [[nodiscard]] bool has_pieces_in_one_file() const;
@@ -50,7 +50,7 @@ class OrderOutputs {
   /// @throws SharedError if they cannot
   void check(const Mesh& mesh) const;
 
-  /// Writes a mesh that all ranks have read, in its new order, and its maps.
+  /// Writes the outputs of a mesh that all ranks have read: the mesh in its new order, pieces and maps.
   ///
   /// @param before  checksums of the mesh in its old order; used for maps only
   void write(const distributed::FileHead& head, const distributed::DistributedOrder& order,
@@ -60,7 +60,7 @@ class OrderOutputs {
   void write(const distributed::ExodusSlices& slices, const distributed::DistributedOrder& order,
              const MeshChecksums& before, Notes& notes);
 
-  /// Writes a mesh that the root holds in its new order, and its maps.
+  /// Writes the outputs of a mesh that the root holds in its new order: the mesh, pieces and maps.
   void write(const MeshToOrder& whole, const distributed::DistributedOrder& order, Notes& notes);
 
   void commit(Notes& notes);

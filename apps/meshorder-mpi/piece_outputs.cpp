@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kDigits = 4;
 
-/// Returns whether a file has the name of a piece: `name`, an underscore and four digits or more.
+/// Returns whether a file has the name of a piece: `name`, an underscore, four digits or more, and ".vtu".
 bool is_name_of_piece(std::string_view file, std::string_view name) {
   constexpr std::string_view kExtension = ".vtu";
   if (!file.starts_with(name) || !file.ends_with(kExtension) || file.size() < name.size() + kExtension.size())
@@ -41,8 +41,7 @@ bool names_mesh_file(const fs::path& path) {
   });
 }
 
-/// Returns the files that a .pvtu file names, as written in it; an empty set if the .pvtu file does not
-/// exist.
+/// Returns the file names in a .pvtu file, as written there; an empty set if the .pvtu file does not exist.
 std::set<std::string> named_by(const fs::path& index) {
   constexpr std::string_view kAttribute = "Source=\"";
   constexpr std::size_t kMost = std::size_t{1} << 28;
@@ -119,7 +118,7 @@ std::vector<std::string> PieceOutputs::open(Index pieces) {
 }
 
 void PieceOutputs::add_to(OutputSet& set, const std::string& index_text) {
-  // a reader would not notice that pieces come from two runs
+  // removed before new pieces are in place: a reader would not notice that pieces come from two runs
   set.remove_first(FilePath::derived(index()));
   for (const fs::path& old : old_pieces()) {
     if (std::find(names_.begin(), names_.end(), old.filename().string()) == names_.end())

@@ -18,9 +18,9 @@ class PieceOutputs {
   /// Checks, before the work, that the files can be written.
   ///
   /// @param folder  made by `open` if it does not exist; its parent has to exist
-  /// @throws InputError if the folder cannot be written or would have the name of a mesh's file, and if it
-  ///                    holds a piece's file that no NAME.pvtu there lists: another program may have written
-  ///                    this file
+  /// @throws InputError if the folder cannot be written; if it has to be made and its name has the extension
+  ///                    of a mesh format; if it holds a file with a piece's name that NAME.pvtu does not
+  ///                    list: another program may have written this file
   PieceOutputs(std::filesystem::path folder, std::string name);
   /// Removes the folder if `open` made it and it is empty.
   ~PieceOutputs();

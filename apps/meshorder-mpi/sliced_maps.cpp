@@ -26,7 +26,7 @@ using distributed::Layout;
 using distributed::MeshSlice;
 using distributed::SharedFile;
 
-/// Returns the checksum of a list that is distributed over the ranks, in their order.
+/// Returns the checksum of a list that is distributed over the ranks, in rank order.
 std::uint64_t checksum_of(const Communicator& communicator, const Layout& layout,
                           const std::vector<GlobalIndex>& own) {
   Checksum checksum;

@@ -13,8 +13,8 @@
 
 namespace meshorder::command {
 
-/// Returns, on all ranks, the checksums of a mesh of which each rank has a slice. Every rank has to call it;
-/// each waits for the ranks before it. O(points + cells).
+/// Returns the checksums of a distributed mesh on all ranks. Every rank has to call it; each waits for the
+/// ranks before it. O(points + cells).
 MeshChecksums checksums_of(const distributed::Communicator& communicator,
                            const distributed::MeshSlice& slice);
 

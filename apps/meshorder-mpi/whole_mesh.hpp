@@ -16,12 +16,12 @@ namespace meshorder::command {
 /// Every rank has to call it.
 ///
 /// @param files  with an output, which sets the format
-/// @throws SharedError for a faulty file, and for cells or ids that the output would have to hold but cannot
+/// @throws SharedError for a faulty file, and if the output cannot hold cells or ids that it has to hold
 [[nodiscard]] MeshToOrder read_at_root(const distributed::Communicator& communicator, const MeshFiles& files,
                                        Ids ids, Notes& notes);
 
-/// Moves the mesh at the root into its new order and fills in its maps. Entries of a matrix stay in the order
-/// of the file. Every rank has to call it.
+/// Reorders the mesh at the root and fills in its maps. Entries of a matrix stay in the file's order. Every
+/// rank has to call it.
 void move_at_root(const distributed::Communicator& communicator, MeshToOrder& whole,
                   const distributed::DistributedOrder& order, bool has_maps, Ids ids);
 

@@ -56,7 +56,7 @@ void run(const ApplyArguments& arguments) {
     throw InputError(arguments.input, error.what(), "give the maps that were written with this mesh");
   }
   if (arguments.inverse) {
-    // restore the ids of the file before it was ordered
+    // restore the ids that the file had before it was ordered
     if (!maps.vertex_ids.empty()) mesh.vertex_ids = maps.vertex_ids;
     if (!maps.cell_ids.empty()) mesh.cell_ids = maps.cell_ids;
   }

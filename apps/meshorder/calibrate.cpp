@@ -27,7 +27,7 @@ struct CalibrateArguments : Common {
   double seconds = CalibrationEffort{}.seconds;
 };
 
-/// Calls `work` and shows its progress on the terminal.
+/// Returns the result of `work`; meanwhile shows its progress on the terminal unless --quiet is given.
 template <class Work>
 auto watched(const CalibrateArguments& arguments, const std::string& what, const Work& work) {
   Progress progress(!arguments.quiet);
@@ -43,7 +43,7 @@ auto watched(const CalibrateArguments& arguments, const std::string& what, const
 std::string in_bytes(Offset bytes) { return to_string(Caches{{bytes}}); }
 
 std::string in_columns(const KernelCosts& costs) {
-  // the smallest cost that is shown is a ten thousandth of a nanosecond
+  // rounds costs to a ten thousandth of a nanosecond
   const auto cell = [](double cost, int width) {
     return fmt::format(" {:>{}.3g}", std::round(1e4 * cost) / 1e4, width - 1);
   };

@@ -27,12 +27,12 @@
 namespace meshorder::command {
 namespace {
 
-/// Largest number of threads that TBB is given: it allocates memory for each.
+/// Largest limit on threads that is given to TBB, which allocates memory for each thread.
 constexpr int kMostThreads = 1024;
 
 const std::map<std::string, int> kDimensionsByName{{"volume", 3}, {"surface", 2}, {"curve", 1}, {"point", 0}};
 
-/// Returns "-1 is not allowed, must be 0 or more".
+/// Returns a message: "-1 is not allowed, must be 0 or more".
 std::string refusal(const std::string& text, const std::string& must) {
   return text + " is not allowed, must be " + must;
 }
@@ -59,7 +59,7 @@ CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest, const s
           ""};
 }
 
-/// Returns the bytes of "4G", the largest limit for "none", nothing for other texts.
+/// Returns the bytes of "4G", UINT64_MAX for "none", nullopt for 0 and other texts.
 std::optional<std::uint64_t> limit_of(const std::string& text) {
   if (text == "none") return UINT64_MAX;
   const std::optional<std::uint64_t> size = parse_size(text);

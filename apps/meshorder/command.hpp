@@ -25,15 +25,15 @@ struct Common {
   int threads = 0;  ///< 0: as many threads as the machine has
 };
 
-/// Ends the command with a message and an exit status.
+/// Exception that ends the command with a message and an exit status.
 struct CommandError : std::runtime_error {
   CommandError(const std::string& message, int exit_status)
       : std::runtime_error(message), status(exit_status) {}
   int status;
 };
 
-/// Splits VERTICES/ELEMENTS. If only VERTICES is given, elements have the same method for `auto`, `original`
-/// and `scrambled`, and lexmax for others.
+/// Returns the methods that VERTICES/ELEMENTS names. If only VERTICES is given, ELEMENTS is the same for
+/// `auto`, `original` and `scrambled`, and lexmax for others.
 MeshMethods order_named(const std::string& name);
 
 // Each function adds the options of a subcommand, which runs once all arguments are parsed.
@@ -46,8 +46,8 @@ void add_openfoam(CLI::App& subcommand);
 void add_calibrate(CLI::App& subcommand);
 void add_methods(CLI::App& subcommand);
 
-/// Removes the words after `--` from the arguments of `try`: they are the program that it runs, not options
-/// of `try`.
+/// Removes `--` and the words after it from the arguments of `try`, and stores these words as the program to
+/// run.
 void take_program_to_try(std::vector<std::string>& arguments);
 
 /// Help of --quiet; the second text is for subcommands that only list something.
@@ -86,7 +86,7 @@ void add_cache_option(CLI::App& subcommand, std::string& caches);
 
 /// Accepts finite numbers above 0.
 CLI::Validator positive();
-/// Accepts whole numbers from `lowest` to `highest`, by default the largest int.
+/// Accepts whole numbers from `lowest` to `highest`, whose default is the largest int.
 CLI::Validator whole_from(std::uint64_t lowest, std::uint64_t highest = std::numeric_limits<int>::max());
 /// Accepts whole numbers from `lowest` to `highest`.
 CLI::Validator in_range(int lowest, int highest);

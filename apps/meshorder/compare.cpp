@@ -33,7 +33,7 @@ struct CompareArguments : Common {
   std::vector<std::string> methods;  ///< empty: `default_methods()`
   OrderOptions ordering;
   double budget_seconds = TimingOptions{}.budget_seconds;
-  std::string caches;  ///< empty: this machine's caches, and no predictions for large meshes
+  std::string caches;  ///< empty: caches of `machine`, and no misses for large meshes
   std::string machine;
   KernelSet kernels = KernelSet::plain;
   bool details = false;
@@ -61,8 +61,8 @@ std::vector<MeshMethods> methods_of(const std::vector<std::string>& names) {
   return methods;
 }
 
-/// Returns the methods for the rows of a matrix, whose entries stay in the order of the file. By default,
-/// they include methods that need points only if the matrix has coordinates.
+/// Returns the methods for the rows of a matrix; its entries stay in the file's order. The default methods
+/// include those that need points only if the matrix has coordinates.
 std::vector<MeshMethods> methods_of_matrix(const Mesh& mesh, const CompareArguments& arguments) {
   std::vector<std::string> names = arguments.methods;
   for (const std::string& name : names) {
@@ -158,7 +158,7 @@ void run(const CompareArguments& arguments) {
         "this mesh has other elements or none; leave the option out",
         2);
   }
-  mesh.cell_blocks.clear();  // orders are compared, not the layout of a file
+  mesh.cell_blocks.clear();  // without the file's blocks, which would restrict the orders
   ComparisonReport report = compared(arguments, mesh, progress, std::move(layouts));
   report.caches = caches;
   progress.finish();

@@ -26,8 +26,8 @@ namespace {
 
 constexpr const char* kBand = "band";
 
-/// Returns the time of an order divided by that of the order `band`. Both are relative to the file's order:
-/// orders that do not fit into memory together are timed in groups, and each group contains the file's order.
+/// Returns the time of an order divided by that of the order `band`. Both times are relative to the file's
+/// order: orders that do not fit into memory together are timed in groups that each contain the file's order.
 double of_band(const KernelTimes& times, const KernelTimes& band) { return band.speedup / times.speedup; }
 
 /// Returns the name of an order in the table: "hilbert", or "rcm (auto)".
@@ -38,7 +38,7 @@ std::string label(const ComparisonReport& report, std::size_t i) {
   return order_in_words(methods, report.is_matrix()) + (by_auto ? " (auto)" : "");
 }
 
-/// Returns the answer in a sentence; an empty text if the file's own order is the only one.
+/// Returns the answer in a sentence; an empty text if --methods names only the file's own order.
 std::string sentence_on(const ComparisonReport& report, const Advice& advice, Workload judged) {
   if (!advice.candidates.empty()) return comparison_in_words(advice, judged);
   return report.auto_keeps ? "auto keeps the file's own order" : "";
@@ -46,8 +46,8 @@ std::string sentence_on(const ComparisonReport& report, const Advice& advice, Wo
 
 constexpr int kBarWidth = 12;
 
-/// A column of the table: the speedup of each order over the file's own order, and last the band's speedup if
-/// it is known.
+/// A column of the table: the factor of each order over the file's own order, and last that of the band if it
+/// is known.
 struct Column {
   std::string title;
   std::vector<double> factors;
@@ -173,7 +173,7 @@ struct KernelColumns {
   std::vector<std::string> last;  ///< last column: its head and its cells; may be empty
 };
 
-/// Prints the table, with as many kernels side by side as fit into 100 columns.
+/// Prints the table in blocks of kernels side by side: as few blocks as fit into 100 columns.
 void print_columns(const Console& console, const ComparisonReport& comparison, const KernelColumns& table) {
   constexpr std::size_t kColumns = 100;
   const std::size_t kernels = comparison.kernels_run.size();

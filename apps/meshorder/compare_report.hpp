@@ -13,7 +13,7 @@
 
 namespace meshorder::command {
 
-/// A comparison as it is shown.
+/// A comparison, and what its report shows besides.
 struct ComparisonReport : MeshComparison {
   std::string file = {};
   std::string size = {};                       ///< in words

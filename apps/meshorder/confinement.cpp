@@ -42,7 +42,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr rlim_t kSecondsToRead = 10;                // of processor time
-constexpr std::uintmax_t kBytesASecond = 1'000'000;  // of a file, for each further second
+constexpr std::uintmax_t kBytesASecond = 1'000'000;  // file size that allows one second more
 constexpr std::uintmax_t kMostSeconds = 10'000'000;
 constexpr unsigned kWaiting = 10;  // elapsed seconds for each second of processor time
 constexpr std::array kPassedOn{SIGINT, SIGTERM, SIGHUP};
@@ -53,7 +53,7 @@ constexpr std::array kCrashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP,
 struct Work {
   std::atomic<bool> is_reading{false};
   std::atomic<std::uint32_t> mesh{0};     ///< index of the mesh that is read, or was read last
-  std::atomic<std::uint32_t> seconds{0};  ///< limit on its processor time
+  std::atomic<std::uint32_t> seconds{0};  ///< limit on the processor time to read it
 };
 
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): state of the process, which a signal
@@ -136,7 +136,7 @@ class Reading {
     (void)::getrusage(RUSAGE_SELF, &used);
     (void)::getrlimit(RLIMIT_CPU, &before_);
     struct rlimit limit = before_;
-    // RLIM_INFINITY is the largest number; at the hard limit the system kills without a message
+    // one second below the hard limit, at which the system kills without a message, if there is such a limit
     const rlim_t hard =
         before_.rlim_max == RLIM_INFINITY || before_.rlim_max < 2 ? before_.rlim_max : before_.rlim_max - 1;
     const auto used_seconds = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec);
@@ -169,7 +169,7 @@ class Reading {
 
 extern "C" void pass_on(int signal, siginfo_t* info, void* /*context*/) {
   const int error = errno;
-  // signals from the terminal reach the child as well; a third signal kills a child that does not end
+  // signals from the terminal reach the child anyway; a third signal kills a child that does not end
   constexpr int kPatience = 2;
   if (signals_received >= kPatience) {
     ::kill(static_cast<pid_t>(child), SIGKILL);
@@ -221,7 +221,7 @@ int report_ending(const Work& of_child, int signal) {
   return report_failure(error.what(), kBadInput);
 }
 
-/// Serves the child, waits for it, removes the files that it unpacked, and ends with the child's status.
+/// Serves the child and waits; removes unfinished outputs and unpacked files; ends with the child's status.
 [[noreturn]] void supervise(const Work& of_child, std::unique_ptr<OutputDeputy> deputy,
                             std::unique_ptr<PrivateFolder> unpacked) {
   deputy->serve_child();
@@ -281,7 +281,7 @@ void confine(const Files& files) {
   (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) std::_Exit(1);
 #endif
-  // never destroyed here: the other process removes their files
+  // never destroyed here: the parent removes their files
   // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): keeps these objects to the end
   static OutputDeputy* const own_deputy = deputy.release();
   static const PrivateFolder* const own_folder = unpacked.release();

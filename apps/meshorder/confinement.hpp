@@ -24,9 +24,9 @@ struct Files {
 
 /// Continues in a child process if a library, not meshorder, parses one of the meshes. The child can reach
 /// only these files and the stored calibrations (see `give_up_rights`): a damaged or malicious file can harm
-/// nothing else. Returns in the child only. This process waits, passes signals on, and ends with the status
-/// of the child. If a library crashes or does not end, this process removes unfinished outputs, prints one
-/// line of error and ends with status 2.
+/// nothing else. Returns in the child only. The parent waits, passes signals on, and ends with the child's
+/// status. If a library crashes or does not end, the parent removes unfinished outputs, prints one line of
+/// error and ends with status 2.
 ///
 /// Does nothing for trusted files (`--trust`), or if the system cannot make a child. Call it while there is
 /// one thread. Throws InputError for an output that cannot be written.
@@ -36,13 +36,13 @@ void confine(const Files& files);
 void trust_files();
 
 /// Bytes for each entry of a graph, like kBytesToOrder: kBytesToPredict to predict times; kBytesToMeasure to
-/// run kernels, for each order that the command holds in memory at a time.
+/// run kernels, for each order in memory at a time.
 inline constexpr std::uint64_t kBytesToPredict = 64;
 inline constexpr std::uint64_t kBytesToMeasure = 100;
 
-/// Reads a mesh as `meshorder::read_mesh` does. In a confined process the reading may take ten seconds of
-/// processor time and one more for each MB, and output of libraries is dropped. For the rest of the process,
-/// graphs may use the part of the memory limit that the reading has left.
+/// Reads a mesh as `meshorder::read_mesh` does. In a confined process, the reading may take ten seconds of
+/// processor time and one more for each MB, and output of libraries is dropped. Afterwards, graphs may use
+/// the part of the memory limit that the reading did not use.
 ///
 /// @param bytes_of_entry  as in `limit_joins`
 Mesh read_input(const FilePath& path, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);

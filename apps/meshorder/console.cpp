@@ -20,7 +20,7 @@ void Console::print_json(nlohmann::ordered_json result) const {
   if (!json_) return;
   result["version"] = MESHORDER_VERSION;
   result["notes"] = notes_;
-  // names may have any bytes; `visible` escapes them as JSON does
+  // `visible` escapes further characters of names, in JSON's form: \u202e
   write_stdout(visible(result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace), "\n") +
                "\n");
 }

@@ -91,7 +91,7 @@ std::vector<CountedKernel> counted_products(const CsrGraph& graph, const MeshOrd
   return kernels;
 }
 
-/// Returns the geometric mean of the `sector_ratio` of the layouts that `reason_to_keep_on_gpu` uses.
+/// Returns the geometric mean of `sector_ratio` over the layouts that `reason_to_keep_on_gpu` uses.
 double ratio_of_additions(std::span<const CountedKernel> additions) {
   double sum = 0;
   for (const CountedKernel& kernel : additions.first(3))

@@ -13,29 +13,29 @@
 #include <string_view>
 #include <vector>
 
-// Counts of the costs of kernels on a graphics processor, for a mesh in its order and in others.
+// Costs of kernels on a graphics processor, counted for a mesh in its order and in others.
 
 namespace meshorder::command {
 
-/// Returns the points and cells of a mesh, moved into an order. O(cells).
+/// Returns the points and cells of a mesh, reordered. O(cells).
 Mesh in_order(const Mesh& mesh, const MeshOrder& order);
 
-/// Returns whether a mesh has elements, all with the same number of vertices, and whether patches can hold
-/// elements with so many vertices. O(cells).
+/// Returns whether a mesh has elements and all have the same number of vertices, few enough for patches.
+/// O(cells).
 bool counts_additions(const Mesh& mesh);
 
-/// Counts additions to the vertices of a mesh's elements, in the mesh's order. Returns nothing if
+/// Returns the cost of adding values of elements to their vertices, in the mesh's order; nothing if
 /// `counts_additions` returns false.
 std::optional<GpuCost> cost_of_additions(const Mesh& mesh, GpuLayout layout);
 
-/// Returns the factor by which a kernel touches fewer sectors in another order.
+/// Returns the factor by which a kernel touches fewer sectors in the new order.
 double sector_ratio(const GpuCost& as_is, const GpuCost& ordered);
 
-/// A graphics processor with known times of the element forces of tetrahedra, in single precision and in the
-/// layouts packed, apart and padded. A time is a constant for the launch, plus a constant for each sector
+/// A graphics processor with known times of element forces of tetrahedra in single precision, for the layouts
+/// packed, apart and padded. A time is a constant for the launch, plus a constant for each sector
 /// (benchmarks/gpu_card.py).
 struct GpuCard {
-  std::string_view name;   ///< of --card
+  std::string_view name;   ///< value of --card
   std::string_view title;  ///< in a sentence
   double launch_us;
   double us_per_sector;
@@ -43,7 +43,7 @@ struct GpuCard {
 
 std::vector<std::string> gpu_card_names();
 
-/// Returns a card by its name; null for an empty or unknown name.
+/// Returns the card of this name; null for an empty or unknown name.
 const GpuCard* gpu_card(std::string_view name);
 
 /// Costs of a kernel in the file's order and in the order for graphics processors.
@@ -70,8 +70,8 @@ struct GpuReport {
 
 /// Orders a mesh for graphics processors, and counts kernels in its own order and in the new one.
 ///
-/// @param graph  of its vertices
-/// @param card   null: no times; otherwise, times on it for meshes of 100,000 linear tetrahedra or more
+/// @param graph  vertex graph of the mesh
+/// @param card   card to compute times for, if the mesh has 100,000 linear tetrahedra or more; null: no times
 GpuReport gpu_report(const Mesh& mesh, const CsrGraph& graph, const GpuCard* card);
 
 /// Returns in a sentence whether the mesh is in a good order for a graphics processor.

@@ -44,7 +44,7 @@ namespace {
 struct InfoArguments : Common {
   std::string input;
   std::string points;
-  std::string caches;  ///< empty: this machine's caches, and no predictions for large meshes
+  std::string caches;  ///< empty: caches of `machine`, and no predictions for large meshes
   std::string machine;
   bool all_threads = false;
   bool measure = false;
@@ -57,12 +57,12 @@ struct InfoArguments : Common {
 
 /// Seconds from the start of the command to the end of --measure, for up to about 300 thousand vertices.
 constexpr double kMeasureWithin = 3.8;
-/// The same without --measure, for meshes of up to `kMaxQuick` simplices and matrices of up to
-/// `kMaxQuickEntries` entries.
+/// Seconds until the end of a quick measurement, for meshes of up to `kMaxQuick` simplices and matrices of up
+/// to `kMaxQuickEntries` entries.
 constexpr double kMeasureQuicklyWithin = 0.7;
 constexpr Offset kMaxQuick = 250'000;
 constexpr Offset kMaxQuickEntries = 1'000'000;
-/// The smallest first-level cache of today's processors, bytes.
+/// Bytes of the smallest first-level cache of today's processors.
 constexpr Offset kFirstCache = 32 * 1024;
 /// Largest number of simplices for which times are predicted by default. A prediction takes seconds per
 /// million vertices.
@@ -73,7 +73,7 @@ constexpr Offset kMaxOfTwoOrders = 500'000;
 /// Returns whether the mesh has elements, which the kernels need; points are not elements.
 bool has_elements(SimplicesRef simplices) { return simplices.size() > 0; }
 
-/// Returns whether times are predicted: with --cache always, else for up to `kMaxPredicted` simplices.
+/// Returns whether times are predicted: for 1 to `kMaxPredicted` simplices; with --cache, also for more.
 bool is_predicted(const InfoArguments& arguments, SimplicesRef simplices) {
   return has_elements(simplices) && (simplices.size() <= kMaxPredicted || !arguments.caches.empty());
 }
@@ -101,13 +101,13 @@ By judged_by(const InfoArguments& arguments, const Mesh& mesh, SimplicesRef simp
   return asks_for_times || simplices.size() > most ? By::prediction : By::quick_measurement;
 }
 
-/// Returns the `halvings` of `reuse_of_kernels`: 0, for all cache lines, if --cache is given.
+/// Returns `halvings` for `reuse_of_kernels`: 0, that is all cache lines, if --cache is given.
 int halvings_of(const InfoArguments& arguments, SimplicesRef simplices) {
   return arguments.caches.empty() ? halvings_for(simplices.size()) : 0;
 }
 
-/// Returns the gain of reordering; nothing for a mesh without elements, nor for a large or tiny mesh unless
-/// --cache, --predict or --measure is given.
+/// Returns the gain of reordering. Returns nothing if it is neither predicted nor measured, or if a quick
+/// measurement would run on data that fit in the first cache.
 std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph,
                                 double graph_seconds, SimplicesRef simplices,
                                 const std::optional<KernelReuse>& reuse, const MachineChoice& machine, By by,
@@ -134,8 +134,8 @@ std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh
   return advise(mesh, graph, options);
 }
 
-/// Returns the reuse of the mesh in its order. Returns nothing for a large mesh unless --cache is given, and
-/// nothing if measuring leaves no time for it.
+/// Returns the reuse of the mesh in its order. Without --cache, returns nothing for more than `kMaxPredicted`
+/// simplices or, with --measure, more than `kMaxOfTwoOrders`.
 ///
 /// @param pattern  of a matrix; null for other meshes
 std::optional<KernelReuse> reuse_of(const InfoArguments& arguments, const CsrGraph& graph,

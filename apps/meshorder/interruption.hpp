@@ -7,8 +7,8 @@ namespace meshorder::command {
 /// with a line on stderr, SIGPIPE silently. Ignored signals stay ignored.
 void clean_up_at_signals();
 
-/// Does the same without lines on stderr, for one of several processes: the launcher reports why it ends
-/// them. Ignores SIGXFSZ: writing a file beyond the limit on sizes then fails.
+/// Does the same as `clean_up_at_signals`, but prints nothing: the launcher of several processes reports why
+/// it ends them. Ignores SIGXFSZ: writing beyond the limit on file sizes then fails.
 void clean_up_quietly_at_signals();
 
 /// While alive, the first Ctrl-C (SIGINT) or SIGTERM sets a flag. A second signal of the same kind has the

@@ -5,7 +5,7 @@
 
 namespace meshorder::command {
 
-/// A subcommand of `meshorder-lab`. `meshorder` shows it in its help and executes that program for it.
+/// A subcommand of `meshorder-lab`, also in the help of `meshorder`, which runs `meshorder-lab` for it.
 struct LabCommand {
   const char* name;
   const char* description;

@@ -38,7 +38,7 @@ void add_kernels_option(CLI::App& subcommand, KernelSet& kernels) {
 
 namespace {
 
-/// Returns MESHORDER_CALIBRATION_SECONDS if it is above 0, else the default time of `meshorder calibrate`, s.
+/// Returns MESHORDER_CALIBRATION_SECONDS if above 0, else the default of `meshorder calibrate`, in seconds.
 double seconds_to_calibrate() {
   const char* const variable = std::getenv("MESHORDER_CALIBRATION_SECONDS");
   const double seconds = variable == nullptr ? 0 : std::strtod(variable, nullptr);

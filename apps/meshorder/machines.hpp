@@ -20,9 +20,9 @@ void add_all_threads_option(CLI::App& subcommand, bool& all_threads);
 /// Adds --kernels, plain or tuned.
 void add_kernels_option(CLI::App& subcommand, KernelSet& kernels);
 
-/// Returns the machine to predict for. If `choice` is only a substitute because this machine is not yet
-/// calibrated, calibrates this machine and stores the result. Reports this on stderr unless `quiet`. `notes`
-/// receives a sentence if something went wrong.
+/// Returns the machine to predict for. If `choice` only replaces this machine, which is not yet calibrated,
+/// says so on stderr unless `quiet`, calibrates this machine and stores the result. Adds a sentence to
+/// `notes` if something goes wrong.
 MachineChoice calibrated(MachineChoice choice, bool all_threads, Progress& progress, bool quiet,
                          Notes& notes);
 

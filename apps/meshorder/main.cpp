@@ -27,8 +27,8 @@ constexpr const char* kLab = "meshorder-lab";
 constexpr std::array<std::string_view, 6> kOptionsOfParts{"--parts",     "--pieces",  "--ghosts",
                                                           "--partition", "--balance", "--interface"};
 
-/// Returns the word that names the subcommand; null if there is none, or if an option before it requests
-/// something else.
+/// Returns the word that names the subcommand; null if there is none, or if another option than --plugin
+/// precedes it.
 char** subcommand(char** arguments) {
   if (*arguments == nullptr) return nullptr;
   for (char** argument = arguments + 1; *argument != nullptr; ++argument) {
@@ -66,7 +66,7 @@ std::filesystem::path beside_this_program(const char* name) {
   return code ? std::filesystem::path() : self.parent_path() / name;
 }
 
-/// Executes the program. If that fails, reports why it is needed and returns the exit status.
+/// Executes the program. If that fails, the first process reports `need`; returns the exit status.
 int execute(const char* program, char** arguments, const std::string& need) {
   ::execv(beside_this_program(program).c_str(), arguments);
   return is_first_process() ? report_failure(need, kBadInput) : kBadInput;
@@ -79,12 +79,11 @@ int execute_mpi(char** arguments, const std::string& who, const std::string& rem
 }
 
 /// If another program beside this one does the work, executes that program with the same arguments and does
-/// not return. This is `meshorder-mpi` if `mpirun` or `srun` started several processes of this program
-/// together, or if `order` has an option of parts; it is `meshorder-lab` for a subcommand of the laboratory.
+/// not return: `meshorder-mpi` if `mpirun` or `srun` started several processes of this program together, or
+/// if `order` has an option of parts; `meshorder-lab` for a subcommand of the laboratory.
 ///
 /// @param arguments  those of `main`
-/// @return exit status if the other program does not exist, which the first process then reports; nothing if
-///         this program does the work
+/// @return exit status if the other program cannot be executed; nothing if this program does the work
 std::optional<int> hand_over(char** arguments) noexcept {
   try {
     if (is_one_of_several())

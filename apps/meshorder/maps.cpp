@@ -113,8 +113,8 @@ constexpr std::array<std::pair<const char*, std::uint64_t MapChecksums::*>, 5> k
      {"cell_ids", &MapChecksums::cell_ids},
      {"kept", &MapChecksums::kept}}};
 
-/// Content of PREFIX.maps.json: checksums of the mesh before and after, and of the maps. Checksums of data
-/// that another program wrote may be unknown.
+/// Content of PREFIX.maps.json: checksums of the mesh before and after, and of the maps. A checksum may
+/// be missing if another program wrote the data.
 struct Identity {
   std::optional<MeshChecksums> before;
   std::optional<MeshChecksums> after;
@@ -154,7 +154,7 @@ void require_order(const Identity& identity, const Maps& maps, const Mesh& mesh,
   const auto has_cells_of = [&](const std::optional<MeshChecksums>& side) {
     return side && side->cells == found.cells;
   };
-  // the points may have been moved since, or rounded by a format
+  // points may have been moved after the ordering, or rounded by a format
   if (found == start || (has_cells_of(start) && found != goal)) return;
   if (has_cells_of(goal) && maps.vertices.is_identity() && maps.cells.is_identity()) return;
   if (has_cells_of(goal) && inverse)

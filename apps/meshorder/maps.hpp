@@ -40,8 +40,8 @@ struct MeshChecksums {
   bool operator==(const MeshChecksums&) const = default;
 };
 
-/// Checksums that distinguish the maps of two runs: of the new numbers of all vertices and of all cells, and
-/// of the lists that not every mesh has. A missing list counts as empty.
+/// Checksums that distinguish the maps of two runs: of the new numbers of all vertices and cells, and of the
+/// optional lists. A missing list counts as empty.
 struct MapChecksums {
   std::uint64_t vertices = 0;
   std::uint64_t cells = 0;
@@ -66,11 +66,11 @@ MapPaths map_paths(const std::string& prefix, const std::string& what);
 /// Returns the checksums of a mesh in its order, the same on any number of threads. O(points + cells).
 MeshChecksums checksums_of(const Mesh& mesh);
 
-/// Throws, before the work, if maps cannot be written.
+/// Throws if maps cannot be written. Call it before the work.
 void check_can_write_maps(const std::string& prefix);
 
-/// Writes the maps, and the checksums of the mesh before and after, as files of a set; the set also removes
-/// maps that an earlier run left with this prefix. Returns the paths.
+/// Writes the maps, and the checksums of the mesh before and after, as files of a set. The set also removes
+/// optional maps that an earlier run left with this prefix. Returns the paths.
 std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& before, const MeshChecksums& after,
                                     const std::string& prefix, OutputSet& files);
 
@@ -78,8 +78,8 @@ std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& befor
 std::string write_identity(const MeshChecksums& before, const MeshChecksums& after, const MapChecksums& maps,
                            const std::string& prefix, OutputSet& files);
 
-/// Marks for removal, in `files`, the optional maps that an earlier run left with this prefix: old numbers
-/// and kept cells.
+/// Makes `files` also remove optional maps that an earlier run left with this prefix: old numbers and kept
+/// cells.
 void remove_other_maps(const std::string& prefix, OutputSet& files);
 
 /// Removes from a mesh the cells that were left out before it was ordered, with the notes of `keep_cells`.
@@ -87,10 +87,10 @@ void remove_other_maps(const std::string& prefix, OutputSet& files);
 /// mesh.
 void leave_out_unmapped_cells(const std::string& prefix, Mesh& mesh, Notes& notes);
 
-/// Reads the maps of a mesh, which is in its old order or, if `inverse`, in the new one. Throws Error if:
-/// - a file is missing, is not a permutation or has another length;
-/// - PREFIX.maps.json exists and shows that the maps belong to another mesh, or that the mesh is in the other
-///   order. A mesh whose points were moved is still recognised by its cells.
+/// Reads the maps of a mesh that is in its old order or, if `inverse`, in the new one. Throws Error if:
+/// - `prefix` names a file, or a file is missing, faulty or of another length;
+/// - PREFIX.maps.json exists and shows that the maps belong to another mesh or run, or that the mesh is in
+///   the other order. A mesh with moved points is still recognised by its cells.
 Maps read_maps(const std::string& prefix, const Mesh& mesh, const std::string& mesh_path, bool inverse);
 
 }  // namespace meshorder::command

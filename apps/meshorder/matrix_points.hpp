@@ -12,7 +12,7 @@ namespace meshorder::command {
 /// Adds --points, which names a file.
 void add_points_option(CLI::App& subcommand, std::string& points);
 
-/// Returns a list with this name for a member of `Files`; an empty list for an empty name.
+/// Returns the list {`name`} for a member of `Files`; an empty list for an empty name.
 std::vector<std::string> named_files(const std::string& name);
 
 /// Gives the rows of a matrix or graph the coordinates in a file (see `read_points`); does nothing for an

@@ -10,7 +10,7 @@
 
 namespace meshorder::command {
 
-/// Counts of the vertex graph of a mesh; for a matrix A, of A + A′.
+/// Counts of the vertex graph of a mesh; for a matrix A, of the graph of A + A′.
 struct GraphFacts {
   ComponentCounts components;
   EdgeSpan span;

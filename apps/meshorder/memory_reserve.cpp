@@ -19,9 +19,9 @@ namespace {
 /// back.
 class MemoryReserve {
  public:
-  /// Returns a block aligned for any type, or nullptr if the array has no room. Blocks take at most three
-  /// quarters of the array, except while the stack is being unwound: the last quarter is for destructors that
-  /// run then.
+  /// Returns a block aligned for any type, or nullptr if it is too large or the array has no room. Blocks
+  /// take at most three quarters of the array; while the stack is being unwound, destructors may use the
+  /// rest.
   void* take(std::size_t size) noexcept {
     const bool unwinding = std::uncaught_exceptions() > 0;
     const std::size_t limit = unwinding ? bytes_.size() : bytes_.size() / 4 * 3;

@@ -28,12 +28,12 @@ struct MeshFiles {
 struct MeshToOrder {
   Mesh mesh;
   const Format* format = nullptr;       ///< of the output
-  std::optional<Permutation> arranged;  ///< what `arrange_cells` did for this format
+  std::optional<Permutation> arranged;  ///< result of `arrange_cells` for this format
   Maps maps;                            ///< ids and kept cells, without the permutations
   MeshChecksums before;                 ///< only if maps are wanted
 };
 
-/// Adds --ids, whose value parse<Ids> reads, --only, --strict and --maps.
+/// Adds --ids (parse<Ids> reads its value), --only, --strict and --maps.
 ///
 /// @param more_maps  other files written with the maps, as the end of a sentence of the help
 void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids,
@@ -43,15 +43,15 @@ void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids
 /// before. Throws InputError for the file `input` if it has no such cells.
 std::vector<Index> keep_wanted(Mesh& mesh, const std::string& input, int dimension, Notes& notes);
 
-/// Reads a mesh with the cells that the output can hold. Throws Error for a faulty file, and for cells that
-/// the output would have to hold but cannot.
+/// Reads a mesh, and keeps the wanted cells that the output can hold. Throws Error for a faulty file, and if
+/// the output cannot hold the cells that it must hold (see `cells_to_write`).
 ///
 /// @param bytes_of_entry  as in `limit_joins`
 MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
 
-/// Writes, as files of a set, a mesh that is in its new order and its maps. The permutations of the maps must
-/// be set. `commit` of the set puts all files in place. Returns the paths of the maps. If the output's name
-/// is empty, no mesh is written.
+/// Writes a mesh in its new order, and its maps, as files of a set, whose `commit` puts them in place. The
+/// permutations of the maps must be set. Returns the paths of the maps. Writes no mesh if the output's name
+/// is empty, and no maps if their prefix is.
 std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
                                        Notes& notes);
 

@@ -100,7 +100,7 @@ class Case {
     command += " -case " + in_shell(folder_.string());
     if (!region_.empty()) command += " -region " + in_shell(region_);
     if (!time_.empty()) command += " -time " + in_shell(time_);
-    // renumberMesh looks for the dictionary in the case, and there in the region's folder
+    // without the region: renumberMesh itself looks in the region's folder of the case
     command += " -overwrite -dict system/renumberMeshDict";
     if (!keeps_other_dictionary) return command;
     return fmt::format("change {}, which requests another order; then {}", dictionary().string(), command);
@@ -287,7 +287,7 @@ class Outputs {
     }
   }
 
-  /// Returns whether the case keeps its dictionary although it requests another order.
+  /// Returns whether the case keeps a dictionary that requests another order.
   [[nodiscard]] bool keeps_other_dictionary() const noexcept { return keeps_other_; }
 
   /// Writes all files, or none; returns their paths.

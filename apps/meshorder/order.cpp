@@ -116,7 +116,7 @@ class Ordering {
     times_.set_bytes("read", bytes_on_disk(arguments_.input));
   }
 
-  /// Computes the order of the mesh, arranged as in the output.
+  /// Arranges the mesh as in the output and computes its order.
   void order() {
     if (is_race(arguments_)) calibrate();
     progress_.stage("ordering", 0.4, 0.7);
@@ -242,7 +242,7 @@ class Ordering {
 };
 
 void run(const OrderArguments& arguments) {
-  // report wrong arguments and outputs that cannot be written before the work
+  // before the work, report wrong arguments and outputs that cannot be written
   check(arguments);
   std::optional<MachineChoice> machine;
   if (is_race(arguments)) machine = choose_machine(arguments.machine, arguments.all_threads);

@@ -24,20 +24,20 @@ struct SpanChange {
 
 /// Returns the lines of the result: the methods with their reasons, the groups, the spans.
 ///
-/// @param stored  null if the mesh is not a matrix
+/// @param stored  null unless the mesh is a matrix or graph
 std::vector<std::string> lines_of_order(const MeshOrder& order, const std::optional<Grouping>& groups,
                                         const SpanChange& spans, const StoredMatrix* stored);
 
-/// Notes a method that was requested by name and does not improve the order of the vertices. `graph` is the
+/// Adds a note if the method requested by name does not improve the order of the vertices. `graph` is the
 /// graph before reordering.
 void note_no_better(GraphRef graph, const ReorderOptions& options, const Permutation& vertices, Notes& notes);
 
-/// Notes a method that was requested by name and does not improve the order of the elements. `mesh` has been
+/// Adds a note if the method requested by name does not improve the order of the elements. `mesh` has been
 /// reordered by `cells`.
 void note_no_better(const Mesh& mesh, const ReorderOptions& options, const Permutation& cells, Notes& notes);
 
-/// Returns whether the numbers of vertices or cells in an output of the format `to` differ from those in the
-/// input. `mesh` has been reordered.
+/// Returns whether vertices or cells have other numbers in an output of the format `to` than in the input.
+/// `mesh` has been reordered.
 bool has_new_numbers(const Mesh& mesh, const MeshOrder& order, const Format& to, Ids ids);
 
 }  // namespace meshorder::command

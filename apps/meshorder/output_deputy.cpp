@@ -45,7 +45,7 @@ void add(std::string& message, Kind kind, std::string_view text) {
   message += '\0';
 }
 
-/// Takes the next part off a message. Throws Error if the part has no end.
+/// Removes and returns the next part of a message. Throws Error if the part has no end or no kind.
 std::pair<char, std::string> next_part(std::string_view& message) {
   const std::size_t end = message.find('\0');
   if (end == std::string_view::npos || end == 0)
@@ -55,7 +55,7 @@ std::pair<char, std::string> next_part(std::string_view& message) {
   return part;
 }
 
-/// Returns the next message; empty if there is none.
+/// Waits for the next message and returns it; empty if none can come.
 std::string received(int socket) {
   std::string message(kLongestMessage, '\0');
   ssize_t size = 0;

@@ -17,7 +17,7 @@ namespace meshorder::command {
 /// each file. A malicious file that controls the child can damage these outputs, but no other file.
 class OutputDeputy {
  public:
-  /// Makes a scratch folder in each folder of an output. Throws InputError for an output that cannot be
+  /// Makes a scratch folder in each folder of outputs or maps. Throws InputError for an output that cannot be
   /// written.
   ///
   /// @param outputs  empty paths are skipped
@@ -45,7 +45,7 @@ class OutputDeputy {
   };
 
   void add_home(const std::filesystem::path& target);
-  /// Returns an output that may be put in place. Throws Error for any other path.
+  /// Returns the output of this path. Throws Error if the child may not put it in place.
   [[nodiscard]] FilePath allowed(const std::string& path) const;
   /// Moves a file from its scratch folder to a scratch folder of the parent, which the child cannot reach.
   [[nodiscard]] Scratch taken(const std::string& scratch, const FilePath& target) const;

@@ -28,8 +28,8 @@
 namespace meshorder::command {
 namespace {
 
-// Variables of Open MPI, of MPICH and its derivatives, and of Slurm. Slurm's variables describe the step that
-// a process belongs to.
+// Variables of Open MPI, of MPICH and its derivatives, of PMIx and of Slurm. Slurm's variables describe the
+// step that a process belongs to.
 constexpr std::array kSizes{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
 constexpr std::array kRanks{"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"};
 
@@ -43,10 +43,10 @@ const char* first_set(const Names& names) {
   return value;
 }
 
-/// Makes the process keep freed memory for later allocations of any thread, if the C library is glibc. By
-/// default, blocks of 32 MiB and more go back to the system, which clears every page again for the next
-/// block. This takes a sixth of the time of `meshorder order` for a mesh of 1.8 million vertices. The peak of
-/// the memory in use grows by up to a fifth.
+/// If the C library is glibc, keeps freed memory in the process for later allocations of any thread. By
+/// default, glibc returns blocks of 32 MiB and more to the system, which clears every page again for the next
+/// block; this costs a sixth of the time of `meshorder order` for a mesh of 1.8 million vertices. Keeping
+/// them raises the peak of the memory in use by up to a fifth.
 void keep_freed_memory() noexcept {
 #if defined(__GLIBC__)
   (void)mallopt(M_MMAP_MAX, 0);         // no blocks outside the heap
@@ -120,8 +120,8 @@ int run_and_report(const Program& program, int argc, char** argv) {
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): read when the process ends
 bool has_run = false;
 
-/// Called at the end of the process. Reports a failure if libhdf5 ended the process, as it does when memory
-/// runs out.
+/// Runs at the end of the process. If a library ended it, as libhdf5 does when memory runs out, removes
+/// unfinished outputs and reports a failure.
 extern "C" void report_end_by_a_library() {
   if (has_run) return;
   remove_unfinished_outputs();
@@ -153,7 +153,7 @@ bool is_started_as_rank() { return first_set(kSizes) != nullptr || first_set(kRa
 
 bool is_one_of_several() {
   const char* const size = first_set(kSizes);
-  // PMIx gives a process only its rank
+  // PMIx sets only the rank
   return size != nullptr ? std::atoi(size) > 1 : std::getenv("PMIX_RANK") != nullptr;
 }
 

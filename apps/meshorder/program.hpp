@@ -11,11 +11,11 @@ class App;
 
 namespace meshorder::command {
 
-/// The parts in which programs with subcommands differ.
+/// What a program with subcommands adds to `run_program`.
 struct Program {
-  /// Gives the parser its options and subcommands. May take away arguments that are not for the parser.
+  /// Gives the parser its options and subcommands. May remove arguments that are not for the parser.
   void (*describe)(CLI::App& app, std::vector<std::string>& arguments);
-  /// Returns the exit status if another program should do the work but does not exist; else nothing.
+  /// Executes another program if that does the work. Returns the exit status if this fails, else nothing.
   std::optional<int> (*hand_over)(char** arguments) noexcept = nullptr;
 };
 

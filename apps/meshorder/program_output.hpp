@@ -18,7 +18,7 @@ std::optional<double> number_of(std::string_view text);
 class PrintedNumbers {
  public:
   /// @param option   option that gave the expression, for messages
-  /// @param pattern  an ECMAScript expression, whose group, or else the whole match, is a number
+  /// @param pattern  an ECMAScript expression; its group or, without a group, the whole match is a number
   /// Throws InvalidArgument for a faulty expression and for an expression with several groups.
   PrintedNumbers(std::string option, std::string pattern);
 
@@ -32,24 +32,24 @@ class PrintedNumbers {
   std::regex expression_;
 };
 
-/// Returns where two lists of numbers disagree: by more than the relative tolerance, and by more than 1e-12
-/// times the largest magnitude in `expected`. Empty if they agree.
+/// Returns the first difference in words: another count of numbers, or numbers that differ by more than the
+/// relative tolerance and by more than 1e-12 times the largest magnitude in `expected`. Empty if none.
 std::string difference(const std::vector<double>& expected, const std::vector<double>& found,
                        double tolerance);
 
-/// Compares two texts word by word, numbers with the limits above and other words exactly. Returns where they
-/// differ.
+/// Returns the first difference of two texts in words; empty if none. Compares numbers with the limits above
+/// and other words exactly.
 std::string difference(std::string_view expected, std::string_view found, double tolerance);
 
 /// Returns the files that hold a program's stdout and stderr; see TrialCommand::log.
 std::vector<std::filesystem::path> printed_files(const std::filesystem::path& log);
 
-/// Returns the last line that begins with "error", in any case, after blanks, "*", "-", "#" or "["; empty if
-/// there is no such line. Searches the last 16 MiB of stderr, then the last 16 MiB of stdout. Cuts the line
-/// to 300 bytes.
+/// Returns the last line of stderr, or else of stdout, that begins with the word "error", in any case, after
+/// blanks, "*", "-", "#" or "["; else an empty text. Skips results: lines with only a number after the last
+/// "=" or ":", or after "error". Searches the last 16 MiB of each; cuts the line to 300 bytes.
 std::string error_line(const std::filesystem::path& log);
 
-/// Returns the last line of a file that is not blank, cut to 300 bytes.
+/// Returns the last line that is not blank in the last 4 KiB of a file, cut to 300 bytes.
 std::string last_line(const std::filesystem::path& file);
 
 }  // namespace meshorder::command

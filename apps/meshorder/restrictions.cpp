@@ -272,7 +272,7 @@ void restrict_calls() {
   for (const auto call : std::array<std::uint32_t, 3>{SYS_kill, SYS_tkill, SYS_tgkill})
     filter.allow_where(call, 0, BPF_JEQ, self);
   filter.allow_where(SYS_prlimit64, 0, BPF_JEQ, 0);
-  filter.allow_where(SYS_utimensat, 1, BPF_JEQ, 0);  // only for open files, which have no path
+  filter.allow_where(SYS_utimensat, 1, BPF_JEQ, 0);  // only by descriptor, without a path
   for (const auto request : std::array<std::uint32_t, 2>{TIOCSTI, TIOCLINUX})
     filter.deny_where(SYS_ioctl, 1, request);
   if constexpr (!kIsWatched) {

@@ -13,7 +13,7 @@ struct Reach {
   std::vector<std::filesystem::path> through;  ///< devices and pipes that may be written to
 };
 
-/// Gives up for good, for this process and the threads that it starts, the rights:
+/// Takes these rights from this process and from the threads that it starts, for good:
 /// - to open files other than those in `reach` (Landlock, from Linux 5.13 on);
 /// - to use the network (seccomp denies this and the following);
 /// - to start programs and processes;

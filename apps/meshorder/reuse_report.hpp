@@ -22,7 +22,7 @@ inline constexpr std::string_view kReuseLegend =
     "log2: mean log2 of the reuse distances; a cache's size: its misses; jumps: misses of the last\n"
     "level that hardware prefetchers do not predict";
 
-/// How tables name the product with a matrix, the only kernel that matrices have.
+/// Title of the product with a matrix in tables; matrices have no other kernel.
 inline constexpr std::string_view kProduct = "product";
 
 /// Returns the heads of the columns of reuse_cells: "log2", the caches, "jumps".

@@ -38,11 +38,11 @@ std::string with_places(const std::string& word, const TrialSubject& subject, co
 /// Reads the times, counts and results of a program from its printed output and its files.
 class TrialReadings {
  public:
-  /// Throws InvalidArgument for faulty expressions, and for a file that is not in the program's folder.
+  /// Throws InvalidArgument for faulty expressions, and for a --same-file outside the program's folder.
   TrialReadings(const TrialOptions& options, const TrialSubject& subject, const TrialFolder& folder);
 
-  /// Reads the results of a run. Throws InvalidArgument if a requested result is missing. Returns how the
-  /// results differ from those of the first run; empty if they are the same.
+  /// Reads the results of a run. Throws InvalidArgument if a requested result is missing or the time is not
+  /// above 0. Returns how the results differ from those of the first run; empty if they are the same.
   std::string read(TriedOrder& order, double& time);
 
  private:
@@ -109,7 +109,7 @@ class Trial {
     report_.orders.push_back({.name = "original", .methods = {"original", "original"}});
   }
 
-  /// Runs the trial. Throws InvalidArgument if the mesh's own order fails, or if all others do.
+  /// Runs the trial. Throws as `run_trial` does.
   void run() {
     warm_up(0);
     find_orders();
@@ -146,7 +146,7 @@ class Trial {
     return result;
   }
 
-  /// Returns the time of a run. If the run fails, excludes the order from the trial.
+  /// Returns the time of a run. If the run fails, excludes the order or, for the mesh's own order, throws.
   double timed_run(std::size_t number, const fs::path& kept = {}) {
     TriedOrder& order = report_.orders[number];
     const TrialCommand command = this->command();
@@ -200,7 +200,7 @@ class Trial {
     }
   }
 
-  /// Returns the remedy for a command that gives CalculiX a name with extension: CalculiX adds the extension.
+  /// Returns a remedy if the command gives CalculiX a name with extension, which it adds itself; else "".
   [[nodiscard]] std::string remedy() const {
     const bool is_calculix = fs::path(program_).filename().string().starts_with("ccx");
     if (!is_calculix || !std::ranges::count(options_.command, "{}")) return {};

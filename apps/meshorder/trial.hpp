@@ -26,8 +26,8 @@ struct TrialOptions {
   double timeout_seconds = 600;
 };
 
-/// Runs a program in several orders. Throws InvalidArgument if the subject's own order fails or if all others
-/// fail; throws Interrupted at a signal.
+/// Runs a program in several orders. Throws InvalidArgument for faulty options, and if the subject's own
+/// order or all others fail; CommandError if `auto` or a named order cannot be made; Interrupted at a signal.
 TrialReport run_trial(const TrialSubject& subject, const TrialOptions& options, Progress& progress,
                       Notes& notes);
 

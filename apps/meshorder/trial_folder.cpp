@@ -23,8 +23,8 @@ constexpr std::size_t kMostFiles = 10'000;
 
 bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
 
-/// Calls `take` with the files below a folder and the links to folders, except hidden ones. If `enters`, also
-/// calls it with the files in folders that links lead to.
+/// Calls `take` with the files and links below a folder, except hidden ones. If `enters`, also calls it with
+/// the files in folders that links lead to.
 void for_each_file(const fs::path& folder, bool enters,
                    const std::function<void(const fs::directory_entry&)>& take) {
   std::error_code code;
@@ -89,7 +89,8 @@ void TrialFolder::find_companions(const fs::path& folder, const std::vector<std:
     std::error_code ignored;
     const std::string name = entry.path().lexically_relative(folder).string();
     const bool is_file = entry.is_regular_file(ignored);
-    if (!is_file && (enters || !entry.is_directory(ignored))) return;  // leads nowhere, or is a device
+    // skips devices, links to nowhere, and links to folders that are entered
+    if (!is_file && (enters || !entry.is_directory(ignored))) return;
     sizes.emplace_back(is_file ? entry.file_size(ignored) : kMostCopied, name);
     companions_[name].source = entry.path();
     if (companions_.size() <= kMostFiles) return;

@@ -16,16 +16,16 @@ namespace meshorder::command {
 /// A private folder in which a program runs on a mesh in one order after another, with copies of the files
 /// beside the mesh. Every run finds the same files at the same paths; files that a run leaves are removed.
 ///
-/// Files beside the mesh are copied, the smallest first, up to 64 MiB; larger ones become links, as do links
-/// to folders. Hidden files are left out. A program can write to linked files: this is noticed after the run,
-/// but not prevented. If a folder is ordered instead of a file, each order is made in a full copy of the
-/// folder, with the folders that links lead to.
+/// Files beside the mesh are copied, the smallest first, up to 64 MiB in all; the others become links, as do
+/// links to folders. Hidden files are left out. If a program writes to linked files, this is noticed after
+/// the run, but not prevented. If a folder is ordered instead of a file, each order is made in a full copy of
+/// the folder, with the folders that links lead to.
 class TrialFolder {
  public:
   /// @param folder  folder of the mesh
   /// @param mesh    name of its file, order 0; empty if the folder itself is ordered
-  /// @param with    names of files and folders in the folder to copy; empty: all
-  /// Throws InvalidArgument for a name that does not exist and for more than 10,000 files.
+  /// @param with    names of the files and folders to copy from `folder`; empty: all
+  /// Throws InvalidArgument for a name that is not in `folder` and for more than 10,000 files.
   TrialFolder(const std::filesystem::path& folder, std::string mesh, const std::vector<std::string>& with);
 
   /// Returns the program's current directory.
@@ -35,7 +35,7 @@ class TrialFolder {
   /// Returns a path for outputs, where nothing exists when a run begins.
   [[nodiscard]] std::filesystem::path output() const { return private_.path() / "out"; }
 
-  /// Makes and returns the folder of an order, in which its files have to be written.
+  /// Makes the folder of an order and returns its path; the caller writes the order's files there.
   std::filesystem::path add_order(std::size_t order);
   /// Copies all files beside the mesh into the folder of an order.
   void copy_files(std::size_t order) const;
@@ -66,7 +66,7 @@ class TrialFolder {
   struct Companion {
     std::filesystem::path source;
     bool is_copied = true;
-    Stamp here;   ///< of the copy
+    Stamp here;   ///< of the copy or link
     Stamp there;  ///< of the file that is linked
   };
   struct MeshFile {

@@ -74,7 +74,7 @@ int wait_for_signal(const sigset_t& signals) {
 
 // ---- the child
 
-/// Reports the errno with which the child failed to begin, and ends it.
+/// Sends the errno of the failed start to the parent, and ends the child.
 [[noreturn]] void give_up(int report) {
   const int error = errno;
   (void)!::write(report, &error, sizeof error);
@@ -88,7 +88,7 @@ void open_as(const char* path, int flags, int descriptor, int report) {
   if (opened != descriptor) ::close(opened);
 }
 
-/// Data of the child, made before the fork: after it, the child may only call system functions.
+/// Data of the child, made before the fork: afterwards, the child may call only async-signal-safe functions.
 struct Prepared {
   explicit Prepared(const TrialCommand& command)
       : folder(command.folder.string()),
@@ -156,7 +156,7 @@ class Processes {
  public:
   explicit Processes(pid_t program) : program_(program) {}
 
-  /// Waits for processes that have ended; returns whether the program is among them.
+  /// Reaps the processes that have ended and adds their usage; returns whether the program is among them.
   bool reap(TrialRun& run) const {
     bool has_ended = false;
     int status = 0;
@@ -204,7 +204,7 @@ class Processes {
   pid_t program_;
 };
 
-/// Waits until the program ends, or kills it; returns the signal that interrupted the wait, or 0.
+/// Waits for the end of the program, which a signal or the timeout kills; returns the signal, or 0.
 int await(const Processes& processes, double timeout_seconds, TrialRun& run) {
   const Stopwatch stopwatch;
   const sigset_t awaited = awaited_signals();

@@ -12,14 +12,14 @@
 
 namespace meshorder::command {
 
-/// A signal that ends meshorder came while a program ran; the program has been ended.
+/// Exception: a signal that ends meshorder came while a program ran; the program has been ended.
 struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// While alive, signals that end meshorder (SIGINT, SIGTERM, SIGHUP) are blocked: `run_program` notices them,
-/// throws Interrupted and leaves them pending. They take effect after this object and everything made after
-/// it are destroyed. Processes that lose their parent become children of this one (Linux).
+/// Blocks signals that end meshorder (SIGINT, SIGTERM, SIGHUP) while alive: `run_program` notices them,
+/// throws Interrupted and leaves them pending. They take effect when this object is destroyed. On Linux,
+/// processes that lose their parent become children of this process.
 class TrialSignals {
  public:
   TrialSignals();
@@ -59,12 +59,12 @@ struct TrialRun {
 std::string find_program(const std::string& name);
 
 /// Runs a program, without a shell and with an empty standard input, in a process group of its own, and waits
-/// for it. Kills the processes that it left running. Throws InvalidArgument if it cannot be executed;
-/// Interrupted at a signal.
+/// for it. Kills the processes that it left running. Throws InvalidArgument if it cannot be executed,
+/// InternalError if no process can be started, Interrupted at a signal.
 TrialRun run_program(const TrialCommand& command);
 
-/// Returns why a run failed: "exit status 3: *ERROR in readinput …". The line is the last one that reports an
-/// error, or else the last one on stderr or stdout.
+/// Returns why a run failed: "exit status 3: *ERROR in readinput …". The line is the last that reports an
+/// error, else the last on stderr, else the last on stdout.
 std::string failure_of(const TrialRun& run, const TrialCommand& command);
 
 }  // namespace meshorder::command

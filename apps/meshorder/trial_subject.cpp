@@ -28,8 +28,8 @@ constexpr std::array kOrdersOfMatrix{"auto", "rcm", "spectral-fronts"};
 constexpr const char* kRenumberMesh = "renumberMesh";
 constexpr std::array kOrdersOfCase{"auto", kRenumberMesh, "bfs", "fiedler", "hilbert"};
 
-/// Throws InvalidArgument for an unknown order: `method` is neither in `methods` nor equal to `also`.
-/// Proposes the method that is spelt almost like it, or else `remedy`.
+/// Throws InvalidArgument for an order whose `method` is neither in `methods` nor equal to `also`. Proposes a
+/// method with a similar name, or else `remedy`.
 [[noreturn]] void refuse_order(const std::string& order, const std::string& method,
                                const std::vector<MethodInfo>& methods, const std::string& also,
                                const std::string& remedy) {
@@ -47,8 +47,8 @@ std::string own_program() {
   return program.string();
 }
 
-/// Runs a program that makes an order. If it fails, throws CommandError with the last line that it printed,
-/// with `shown` in place of `path`.
+/// Runs a program that makes an order. If it fails, throws CommandError with the text of `failure_of`, with
+/// `shown` in place of `path`.
 TrialRun run_to_order(const TrialCommand& command, const std::string& path, const std::string& shown) {
   TrialRun run = run_program(command);
   if (run.succeeded()) return run;

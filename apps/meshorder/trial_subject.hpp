@@ -33,7 +33,7 @@ class TrialSubject : public Polymorphic {
   virtual bool make(TriedOrder& order, TrialFolder& folder, std::size_t number) const = 0;
 };
 
-/// How orders are made.
+/// Options for making orders.
 struct OrderingOptions {
   int threads = 0;
   std::string ids = "renumber";      ///< as in `order`

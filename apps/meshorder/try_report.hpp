@@ -75,7 +75,7 @@ std::string interval_in_words(const TimeRatio& speedup);
 /// Returns the number of runs after which the best order has saved its cost; nothing if it saves no seconds.
 std::optional<double> runs_to_pay(const TrialReport& report);
 
-/// Returns the number of orders, without the mesh's own, that can be compared in this many runs; at least 1.
+/// Returns how many orders besides the mesh's own can be compared in `runs` runs; at least 1.
 std::size_t orders_that_fit(double runs);
 
 /// Returns the budget, in seconds, that an undecided trial needs to get an interval or, if it has one, to

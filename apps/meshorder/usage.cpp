@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kColumns = 100;
 
-/// Reads a word; words in backquotes count as one. Returns whether there was one.
+/// Reads a word; words in backquotes count as one. Returns whether there was a word.
 bool next_word(std::istream& text, std::string& word) {
   if (!(text >> word)) return false;
   for (std::string next; std::count(word.begin(), word.end(), '`') % 2 == 1 && text >> next;)
@@ -109,7 +109,7 @@ std::string unknown_option(const std::vector<std::string>& words) {
 }
 
 /// Returns the words to type after `order` if the user named a mesh but no output: "part.msh -o
-/// ordered-part.msh". If there is exactly one superfluous argument in `words`, it is the output.
+/// ordered-part.msh". A single superfluous argument in `words` becomes the output.
 std::optional<std::string> line_with_output(const CLI::App& command, const std::vector<std::string>& words) {
   const CLI::Option* const mesh = command.get_option_no_throw("MESH");
   const CLI::Option* const output = command.get_option_no_throw("--output");

@@ -29,8 +29,8 @@ void refuse_empty_values(CLI::App& command);
 /// not exist.
 std::optional<std::string> unknown_command(const CLI::App& app);
 
-/// Returns what is wrong with the parsed arguments and which help to read. Looks first for unknown commands
-/// and options, and names the nearest known one; otherwise returns the parser's own error.
+/// Returns what is wrong with the parsed arguments and which help to read. Looks first for known faults, such
+/// as an unknown command or option, and names the nearest known one; else returns the parser's own error.
 std::string usage_fault(const CLI::App& app, const CLI::ParseError& error);
 
 /// Returns the layout of the help: descriptions are wrapped so that no line is longer than 100 columns.

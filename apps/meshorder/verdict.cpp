@@ -21,7 +21,7 @@ std::string methods_of(const Candidate& candidate, bool is_matrix) {
   return is_matrix ? candidate.vertices.name : candidate.vertices.name + "/" + candidate.elements.name;
 }
 
-/// Returns "4.1×", or "–" if a time is unknown.
+/// Returns "4.10×", or "–" if a time is unknown.
 std::string factor_cell(const std::optional<KernelMilliseconds>& as_is,
                         const std::optional<KernelMilliseconds>& ordered, std::size_t kernel) {
   if (!as_is || !ordered || (*ordered)[kernel] <= 0) return "–";

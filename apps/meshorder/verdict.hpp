@@ -14,11 +14,11 @@ namespace meshorder::command {
 void print_line_for(const Console& console, const Candidate& candidate, bool is_matrix,
                     const std::string& mesh);
 
-/// Prints the command for the order that the verdict names. If nothing is gained, prints whether
-/// `order` would move the mesh all the same.
+/// Prints the command for the order that the verdict names. If nothing is gained but `order` would still move
+/// the mesh, says so.
 void print_next(const Console& console, const Advice& advice, const std::string& mesh);
 
-/// Prints the times of the kernels in the present order and the speedups of others.
+/// Prints the times of the kernels in the present order, and the speedups and commands of other orders.
 void print_times(const Console& console, const Advice& advice);
 
 /// Returns the keys that docs/json.md lists.

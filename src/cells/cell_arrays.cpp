@@ -31,8 +31,8 @@ Index checked_size(std::size_t size, const char* what) {
   return static_cast<Index>(size);
 }
 
-/// Returns the numbers of a view minus `base`: as a span of the view's array if no conversion is needed, else
-/// of `own`. Numbers outside the range of Index become −1.
+/// Returns the numbers of a view minus `base`: a span of the view's array if no conversion is needed, else of
+/// `own`. A conversion turns numbers below 0 or above kMaxIndex into −1.
 std::span<const Index> narrowed(const IndexView& numbers, int base, std::vector<Index>& own) {
   if (numbers.bytes() == 4 && base == 0) {
     return {static_cast<const Index*>(numbers.data()), numbers.size()};

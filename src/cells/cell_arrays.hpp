@@ -54,18 +54,19 @@ std::size_t vertex_count_of(const MeshView& mesh);
 /// as lines. O(1).
 std::set<int> cell_widths(Shape shape);
 
-/// Converts a view of cells, and checks it unless `check` is none: sizes match, offsets ascend, VTK types are
-/// known, cells have at least as many vertices as their shape has corners, cells of blocks have a number of
-/// vertices that `cell_widths` lists, vertices are in range.
+/// Converts a view of cells. Always checks the base, VTK types, the number of types and the sizes of blocks.
+/// Unless `check` is none, also checks that offsets ascend and fit the entries, shapes are known, cells have
+/// at least as many vertices as their shape has corners, cells of blocks have a number of vertices that
+/// `cell_widths` lists, and vertices are in range.
 ///
-/// @throws InvalidArgument for the first fault, with the cell that has it
+/// @throws InvalidArgument, which describes the first fault
 /// @throws TooLarge for more than 2,147,483,647 vertices or cells
 /// @note O(entries), on all threads of the arena.
 CellArrays cell_arrays(const CellsView& view, std::size_t vertex_count, Check check);
 
-/// Returns the number of vertices that all cells have; 0 without cells. O(cells).
+/// Returns the number of vertices that each cell has; 0 without cells. O(cells).
 ///
-/// @throws InvalidArgument if cells have different numbers; the message begins with `caller`
+/// @throws InvalidArgument if numbers or shapes differ between cells; the message begins with `caller`
 int uniform_width(const CellArrays& cells, const char* caller);
 
 /// A selection of cells, and their vertices.

@@ -17,7 +17,7 @@ struct ElementFacet {
   Index element;
 };
 
-/// Looks up the facets of cell types, which are the same for all cells of a type.
+/// Caches the facets of each type of cells.
 class FacetsOfTypes {
  public:
   const std::vector<std::vector<int>>& operator()(Shape shape, int vertices);
@@ -34,16 +34,16 @@ std::array<Index, 4> sorted_corners(std::span<const Index> cell, const std::vect
 /// `vertex_count` exceeds every corner. O(facets · log facets at a vertex).
 std::vector<ElementFacet> matched_facets(const std::vector<ElementFacet>& facets, Index vertex_count);
 
-/// Returns the facets of elements, matched.
+/// Returns the facets of elements, sorted in this way.
 ///
 /// @throws InvalidArgument if the shapes of cells are not known
 std::vector<ElementFacet> matched_facets(const CellArrays& cells, const CellSelection& elements);
 
-/// Joins elements that share a facet, numbered as in `elements`: a face for volumes, an edge for surfaces, an
-/// end for lines. Two facets are the same if they have the same corners, in any order. If more than two
-/// elements share a facet, each is joined to the next. A polyhedron, whose faces are not known, is joined to
-/// the elements that share three vertices with it; vertices of over 1,024 elements do not count. O(facets ·
-/// log facets at a vertex), for polyhedra O(Σ elements at their vertices).
+/// Returns the graph that joins elements, numbered as in `elements`, if they share a facet: volumes a face,
+/// surfaces an edge, lines an end. Two facets are the same if they have the same corners, in any order. If
+/// more than two elements share a facet, each is joined to the next. A polyhedron, whose faces are not known,
+/// is joined to the elements that share three vertices with it; vertices of over 1,024 elements do not count.
+/// O(facets · log facets at a vertex), for polyhedra O(Σ elements at their vertices).
 ///
 /// @throws InvalidArgument if the shapes of cells are not known
 CsrGraph joined_by_facet(const CellArrays& cells, const CellSelection& elements);

@@ -50,10 +50,9 @@ Offset checked_cache(std::size_t bytes, const char* caller) {
   return static_cast<Offset>(std::min<std::size_t>(bytes, std::size_t{1} << 62));
 }
 
-/// Returns the number of sectors that threads load to read the offsets, of 32 bits, at which each of n lists
-/// begins and ends.
+/// Returns the number of sectors that threads load to read the 32-bit begin and end of each of n lists.
 ///
-/// @param lanes  threads of each list
+/// @param lanes  threads for each list
 Offset sectors_of_offsets(Offset n, Offset lanes) {
   constexpr Offset kInSector = kSector / kIndexBytes;
   Offset sectors = 0;
@@ -88,7 +87,7 @@ Offset used_vertices(const CellArrays& cells) {
   return std::ranges::count(is_used, 1);
 }
 
-/// Fills in the bytes of a pass over cells that reads an array of vertices and adds to another.
+/// Sets the bytes of `cost` for a pass over cells that reads vertices' numbers and adds to another array.
 void count_bytes(GpuCost& cost, const CellArrays& cells, GpuLayout layout, Offset cache_bytes) {
   const int arrays = layout == GpuLayout::apart ? 3 : 1;
   const int record = static_cast<int>(layout == GpuLayout::apart    ? kFloatBytes
@@ -105,7 +104,7 @@ void count_bytes(GpuCost& cost, const CellArrays& cells, GpuLayout layout, Offse
                     2 * arrays * kSector * sectors_of(used_vertices(cells) * record);
 }
 
-/// Returns the cost of blocks that load the vertices of their patches and add to them.
+/// Returns the cost of thread blocks, each of which loads the vertices of a patch and adds to them.
 GpuCost cost_of(const Patches& cut, const CellArrays& cells, Offset cache_bytes) {
   GpuCost cost;
   CacheWindows cache(Offset{cells.vertex_count} * kPackedBytes, 2, cache_bytes);
@@ -154,7 +153,7 @@ GpuCost cost_of(const GatherLists& lists, const CellArrays& cells, int width, Of
     second.stream(kIndexBytes);
     second.touch(named.record(entry), kContributionBytes);
   }
-  const Offset written = kContributionBytes * entries;  // not read
+  const Offset written = kContributionBytes * entries;  // written, not read
   cost.dram_bytes = first.bytes() - written + second.bytes() + bytes_of_offsets(n);
   cost.dram_floor = 2 * kIndexBytes * entries + kSector * sectors_of(used_vertices(cells) * kPackedBytes) +
                     kSector * stored + bytes_of_offsets(n);

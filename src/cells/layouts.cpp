@@ -59,7 +59,7 @@ class ColoursAtVertex {
   static constexpr Index kBits = 64;
 
   std::array<std::uint64_t, kFirstColours / kBits> taken_{};
-  Index next_ = kFirstColours;  ///< the first colour after all taken ones
+  Index next_ = kFirstColours;  ///< the first colour after all taken ones; ≥ kFirstColours
 };
 
 /// Finds the vertices of patches and their local numbers.
@@ -121,7 +121,7 @@ Patches patches(const CellsView& cells, std::size_t vertex_count, int size, cons
     result.cells.resize(static_cast<std::size_t>(arrays.size()));
     result.local.resize(arrays.vertices.size());
     const Index count = chunk_count(arrays.size(), size);
-    // a part for each thread, since each needs numbers for all vertices
+    // one part for each thread: each part needs an array of numbers for all vertices
     const Index parts = std::min(count, thread_count());
     std::vector<std::vector<Index>> vertices(static_cast<std::size_t>(parts));
     result.offsets.resize(static_cast<std::size_t>(count) + 1);

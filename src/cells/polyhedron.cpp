@@ -16,7 +16,7 @@ struct FaceEdge {
   Index from;
   Index to;
   std::size_t face;
-  std::size_t twin = kNoTwin;  ///< place in `edges_` of the same edge of another face
+  std::size_t twin = kNoTwin;  ///< index in `edges_` of the same edge in another face
 };
 
 /// A standard shape, described by its faces.
@@ -162,7 +162,7 @@ class FewFaces {
   std::span<const PolyhedronFace> faces_;
   std::array<FaceEdge, kMostFaces * kMostCorners> edges_{};
   std::size_t edge_count_ = 0;
-  std::array<bool, kMostFaces> is_turned_{};  ///< whether a face lists its corners in the other direction
+  std::array<bool, kMostFaces> is_turned_{};  ///< `is_inward` of each face, if the first face's is right
 };
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace meshorder {
 /// A face of a polyhedron.
 struct PolyhedronFace {
   std::span<const Index> corners;  ///< in order around the face
-  bool is_inward = false;          ///< the corners turn around a normal that points into the polyhedron
+  bool is_inward = false;          ///< whether the normal that the corners turn around points inward
 };
 
 /// The cell that the faces of a polyhedron form.

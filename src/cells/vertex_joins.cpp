@@ -6,7 +6,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the pieces of all elements.
+/// Returns the pieces of all elements (see for_each_piece).
 Incidence pieces_of(const CellArrays& cells, const CellSelection& elements) {
   Incidence pieces;
   pieces.vertex_count = cells.vertex_count;

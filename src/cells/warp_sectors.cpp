@@ -18,8 +18,8 @@ constexpr Index kWarpsInChunk = 512;
 /// How the additions of a thread to a vertex lie in memory.
 struct Additions {
   int record_bytes;  ///< bytes from the record of one vertex to the next
-  int count;         ///< number of additions, one after another in the record
-  int arrays;        ///< number of arrays that have these additions
+  int count;         ///< number of additions to adjacent numbers of the record
+  int arrays;        ///< number of arrays with such additions
 };
 
 Additions additions_of(GpuLayout layout) {
@@ -33,8 +33,8 @@ Additions additions_of(GpuLayout layout) {
   }
 }
 
-/// Returns the sectors of one addition by the threads of a warp to their vertices. A sector counts as often
-/// as the largest number of threads that add to one of its vertices.
+/// Returns the sectors of one addition by the threads of a warp to their vertices. A sector counts t times,
+/// where t is the largest number of threads that add to the same vertex in it.
 Offset sectors_of_addition(std::span<const Index> ascending, int record_bytes, int first_byte) {
   Offset sectors = 0;
   Offset sector = -1;
@@ -118,15 +118,15 @@ class WarpLoop {
   static constexpr Offset kUnrolled = 4;
 
   struct Thread {
-    Offset next = 0;   ///< its next entry
-    Offset left = 0;   ///< number of entries that it has not read
-    Offset first = 0;  ///< number of entries that it reads one by one
+    Offset next = 0;   ///< index of the next entry
+    Offset left = 0;   ///< number of entries not yet read
+    Offset first = 0;  ///< number of entries to read one by one, first
   };
 
   std::span<Thread> threads() { return std::span(threads_).first(size_); }
 
-  /// Lets the threads for which `takes_part` is true read `steps` entries each, one at a step. Returns
-  /// whether there is such a thread.
+  /// Lets each thread for which `takes_part` is true read `steps` entries, one at a step. Returns whether
+  /// there is such a thread.
   template <class TakesPart>
   bool read(Offset steps, TakesPart takes_part) {
     std::array<Thread*, kWarp> active{};

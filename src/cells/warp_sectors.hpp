@@ -18,7 +18,7 @@ inline constexpr Index kWarp = 32;
 /// Elements in an order.
 struct ElementOrder {
   IncidenceRef elements;
-  std::span<const Index> new_to_old = {};         ///< empty: the order of their numbers
+  std::span<const Index> new_to_old = {};         ///< empty: the elements keep their order
   std::span<const Index> vertex_old_to_new = {};  ///< empty: the vertices keep their numbers
 };
 
@@ -37,7 +37,7 @@ GpuCost requests_and_floor(Index elements, int width, GpuLayout layout);
 /// @param ascending  different vertices in ascending order
 GpuCost additions_to(std::span<const Index> ascending, GpuLayout layout);
 
-/// Memory that loops over lists load, with one thread or several threads for each list.
+/// What warps load when one or several threads loop over each list.
 struct ListLoads {
   Offset requests = 0;  ///< steps of warps; in each, the active threads load one entry
   Offset lists = 0;     ///< sectors of an array that has 4 bytes for each entry of the lists
@@ -76,7 +76,7 @@ ListLoads loads_of_lists(const RecordLists& lists, int lanes);
 /// for each row, counted as by `loads_of_lists`. The matrix has a diagonal. O(entries of the counted rows ·
 /// log degree) time.
 ///
-/// @param order   of rows and neighbours
+/// @param order   of rows and columns
 /// @param stride  only every stride-th warp is counted, ≥ 1
 Offset sectors_of_product(GraphRef graph, const Permutation& order, Index stride = 1);
 

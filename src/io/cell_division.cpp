@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the labels of the cells; empty if they cannot be ids of blocks.
+/// Returns the labels of the cells; empty if some need 64 bits and `with_wide_ones` is false.
 std::vector<std::int64_t> usable_labels(const Mesh& mesh, bool with_wide_ones) {
   Labels labels = labels_of(mesh, Association::cells);
   const bool are_usable = with_wide_ones || fit_32_bits(labels.values);

@@ -27,7 +27,7 @@ struct CellDivision {
   bool by_labels = false;
   bool by_sets = false;
   std::vector<Index> key_of_cell;  ///< index in `keys` of each cell's block
-  std::vector<CellPart> keys;      ///< the blocks, in the order of their first cells, `first`
+  std::vector<CellPart> keys;      ///< the blocks, ascending by `first`
 };
 
 /// What divides the cells into blocks besides their types and 32-bit labels.

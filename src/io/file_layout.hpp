@@ -20,13 +20,13 @@ struct FilePart {
   Role role = Role::data;
   Association association = Association::vertices;  ///< whether a row belongs to a vertex or to a cell
   std::uint8_t type = 0;                            ///< number type: index of an alternative of Values
-  Index components = 1;                             ///< numbers of a row
-  std::int64_t rows = 0;   ///< number of rows; of the connectivity, number of vertices
-  std::size_t number = 0;  ///< index of its name in FileLayout::names
-  std::int64_t at = 0;  ///< byte offset of the size words before the values; if there are none, of the values
+  Index components = 1;                             ///< numbers in a row
+  std::int64_t rows = 0;                            ///< number of rows; for the connectivity, its length
+  std::size_t number = 0;                           ///< index in FileLayout::names of the part's name
+  std::int64_t at = 0;      ///< byte offset of the size words, or of the values if there are no size words
   std::int64_t stored = 0;  ///< bytes in the file, including the size words
   std::int64_t blocks = 0;  ///< number of compressed blocks; 0: not compressed
-  std::int64_t block = 0;   ///< uncompressed bytes of a block; the last one may be smaller
+  std::int64_t block = 0;   ///< uncompressed bytes of a block; the last block may be smaller
 
   /// Returns the bytes of a row, uncompressed.
   [[nodiscard]] std::int64_t row_size() const { return components * size_of_type(type); }
@@ -39,7 +39,7 @@ struct FileSizes {
   std::int64_t vertices = 0;
   std::int64_t cells = 0;
   std::int64_t entries = 0;  ///< length of the connectivity
-  // only for a file without types and offsets of cells
+  // used only if the file has no types and offsets of cells
   Shape shape = Shape::vertex;  ///< shape of all cells
   std::int64_t nodes = 0;       ///< number of vertices of each cell
 };
@@ -60,13 +60,13 @@ class SplitFile : public Polymorphic {
   /// write the values.
   ///
   /// @param document  path of the new document; the caller writes it
-  /// @param checksum  marks both files: a `Checksum` of all points, then of the vertices of each cell
+  /// @param checksum  mark to write into both files: `Checksum` of all points, then each cell's vertices
   /// @return the text of the document
   /// @throws InputError if the data cannot be written
   [[nodiscard]] virtual std::string write_without_values(const std::string& document, const std::string& data,
                                                          std::uint64_t checksum) const = 0;
 
-  /// Returns the byte offset of each part in a data file of `write_without_values`, indexed by
+  /// Returns the byte offset of each part in a data file that `write_without_values` wrote, indexed by
   /// FilePart::number.
   ///
   /// @param name  name of the data file in messages

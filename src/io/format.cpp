@@ -79,7 +79,7 @@ const Format& with_library(const Format& format, const std::string& where) {
   return format;
 }
 
-/// Returns whether the size is that of a binary STL file with the number of triangles in its header.
+/// Returns whether the file is as long as binary STL with the number of triangles in its header.
 bool has_size_of_stl(std::string_view bytes) {
   constexpr std::size_t kHeader = 80;
   if (bytes.size() < kHeader + 4) return false;
@@ -169,7 +169,7 @@ bool is_bulk_data(std::string_view bytes) {
   return false;
 }
 
-/// Returns the name of the format whose files begin like `bytes`; an empty text if none does. Skips comments
+/// Returns the name of the format whose files begin like `bytes`; empty if no format fits. Skips comments
 /// and empty lines before the first word.
 std::string_view format_that_begins(std::string_view bytes) {
   if (is_cgns(bytes)) return "CGNS";
@@ -201,8 +201,8 @@ std::string_view format_that_begins(std::string_view bytes) {
   return {};
 }
 
-/// Returns the path of a piece of a decomposed Exodus mesh, "mesh.e.16.03", without the two numbers at its
-/// end; returns other paths unchanged.
+/// Removes the two numbers that end the path of a piece of a decomposed Exodus mesh, as in "mesh.e.16.03".
+/// Returns other paths unchanged.
 std::filesystem::path without_piece_numbers(const std::filesystem::path& path) {
   const auto is_number = [](const std::string& extension) {
     return extension.size() > 1 && extension.find_first_not_of("0123456789", 1) == std::string::npos;

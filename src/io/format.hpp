@@ -26,23 +26,22 @@ struct Format {
   bool groups_cells_by_type;                 ///< whether files keep the cells of a type together
   Mesh (*read)(const FilePath&, Notes&);
   void (*write)(const Mesh&, const FilePath&, Notes&);
-  /// Returns whether a file of this mesh can hold cells of this type in a form that other programs read. If
-  /// the mesh came from the format, it is enough that meshorder reads them. `write` gets no other cells.
+  /// Returns whether a file of this mesh can hold cells of this type in a form that other programs read. For
+  /// a mesh from this format, a form that only meshorder reads suffices. `write` gets no other cells.
   bool (*holds)(const Mesh& mesh, Shape shape, int vertices);
   /// Returns why the cells of a mesh cannot share a file, although the format `holds` each of their types: a
   /// clause that begins with the format's name; empty if they can. Null: they always can. `write` gets no
   /// mesh with a conflict.
   std::string (*conflict)(const Mesh& mesh) = nullptr;
-  /// Returns the position in a file of each cell of a mesh from another format; `blocks` receives the first
-  /// cell of each part that stays together. Null: `groups_cells_by_type` decides.
+  /// For a mesh from another format: returns each cell's position in the file; `blocks` receives the first
+  /// position of each block of cells that stay together. Null: `groups_cells_by_type` decides.
   Permutation (*places)(const Mesh&, std::vector<Index>& blocks) = nullptr;
   /// Normalises cells whose form depends on the order of the vertices: moves the entries of a symmetric
-  /// matrix below the diagonal, sorts the edges of a graph. Call it after moving vertices. Returns the
+  /// matrix below the diagonal, sorts the edges of a graph. Call it after reordering vertices. Returns the
   /// permutation of cells that it applied. Null: the format has no such cells.
   Permutation (*settle_cells)(Mesh&) = nullptr;
-  /// Returns a group for each cell, numbered by first appearance. The cells of a group have the same
-  /// statements before them in a file. They stay together unless the caller gives other groups. Null: no
-  /// groups.
+  /// Returns each cell's group, numbered by first appearance. The cells of a group need the same statements
+  /// before them in the file; they stay together unless the caller gives other groups. Null: no groups.
   std::vector<Index> (*together)(const Mesh&) = nullptr;
   bool single_file = true;   ///< whether a mesh is one file; several files do not fit one stream
   int first_number = 0;      ///< number of the first vertex and the first cell of a mesh without ids
@@ -63,12 +62,12 @@ struct Format {
 /// Returns all formats, in the order of the help text.
 std::span<const Format> all_formats();
 
-/// Returns the format of the extension of `path`; case and a final ".gz" are ignored. Throws InputError if
-/// the extension is unknown; the error suggests or lists known extensions. Throws Unavailable if this build
-/// lacks the library of the format or cannot load it.
+/// Returns the format of the extension of `path`; case and a final ".gz" are ignored. Throws InputError, with
+/// advice, for unknown extensions, OpenFOAM cases and folders without an extension. Throws Unavailable if
+/// this build lacks the library of the format or cannot load it.
 const Format& format_of(const std::filesystem::path& path);
 
-/// As `format_of`, for a file to be written. Throws InputError for .pvtu: it lists pieces and is only read.
+/// As `format_of`, for a file to be written. Also throws InputError for .pvtu, which is only read.
 const Format& output_format_of(const std::filesystem::path& path);
 
 /// Returns the format of that name; case is ignored. Throws InvalidArgument if the name is unknown; the error
@@ -86,22 +85,23 @@ const Format* format_of_bytes(std::string_view bytes);
 /// they stay. A reordering that is computed afterwards refers to the cells in the order of the file.
 std::optional<Permutation> arrange_cells(Mesh& mesh, const Format& to);
 
-/// Returns an order of cells that puts the cells of each group of `to.together` together, except cells that
-/// cannot change places. O(cells · log cells).
+/// Returns `cells` with each group of `to.together` made contiguous, as far as its cells can change places.
+/// O(cells · log cells).
 Permutation with_groups_together(const Mesh& mesh, Permutation cells, const Format& to);
 
 /// As `compute_reordering`, for a mesh that will be written in `options.format` (if empty, in the mesh's own
-/// format). If `options` has no groups of cells, the groups of `Format::together` stay together.
+/// format). If `options` has no groups of cells, the groups of `Format::together` stay together, except in
+/// the original order of a mesh that came from that format.
 MeshOrder compute_order_in_file(const Mesh& mesh, const CsrGraph& graph, const ReorderOptions& options);
 
 /// Throws InvalidArgument for `Ids::keep` if the format cannot hold ids.
 void check_holds_ids(const Format& format, Ids ids);
 
-/// Moves a valid mesh, whose cells `arrange_cells` arranged for the format `to`, and updates its ids.
+/// Reorders a valid mesh that `arrange_cells` arranged for the format `to`, and updates its ids.
 ///
 /// @param to        null: a mesh without a format
 /// @param arranged  what `arrange_cells` returned
-/// @return the new places of the cells as they were before `arrange_cells`
+/// @return the permutation of cells from their order before `arrange_cells`
 Permutation move_in_file(Mesh& mesh, const Permutation& vertices, Permutation cells, const Format* to,
                          const std::optional<Permutation>& arranged, Ids ids);
 
@@ -114,23 +114,23 @@ void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices,
 /// `apply_reordering`. Ids change as for `Ids::renumber`.
 void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells);
 
-/// As the public `read_mesh`; a file that another file names must be in that file's folder or below.
+/// As the public `read_mesh`; files that the mesh names must be below its folder or an include folder.
 Mesh read_mesh_from(const FilePath& path, const ReadOptions& options = {});
 
-/// As the public `write_mesh`, for a valid mesh; if `path` belongs to an OutputSet, its commit puts the files
-/// in place. Returns nothing if the cells stay in their places.
+/// As the public `write_mesh`, for a valid mesh. If `path` belongs to an OutputSet, the set's commit puts the
+/// files in place. Returns nothing if the cells stay in their places.
 ///
 /// @param format  null: the format of the extension
 std::optional<Permutation> write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options,
                                          const Format* format = nullptr);
 
-/// As `write_mesh_to`, for a mesh whose cells are those of the file, in their places.
+/// As `write_mesh_to`, for a mesh whose cells are those of the file, in the file's order.
 void write_arranged(const Mesh& mesh, const FilePath& path, const WriteOptions& options,
                     const Format& format);
 
 // The extension .inp belongs to two formats: Abaqus decks and AVS UCD.
 
-/// As `format_of`, for a file to be read: .inp is AVS UCD if the file's first bytes look like it, else
+/// As `format_of`, for a file to be read: .inp is AVS UCD if the file's first bytes look like UCD, else
 /// Abaqus. Throws InputError for an .inp file that cannot be read.
 const Format& format_of_file(const FilePath& path);
 

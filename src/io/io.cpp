@@ -64,7 +64,7 @@ bool is_written_to(const FilePath& path, std::chrono::file_clock::time_point sin
   return path.store() == nullptr && !code && last > since - std::chrono::seconds(1);
 }
 
-/// Throws InputError for a file that Git LFS has put in the place of the real one.
+/// Throws InputError if the file is a pointer of Git LFS.
 void refuse_pointer(const FilePath& path) {
   constexpr std::string_view kBeginning = "version https://git-lfs.github.com/spec/";
   if (path.is_file() && !path.is_empty() && path.read_first(kBeginning.size()) == kBeginning)
@@ -72,7 +72,7 @@ void refuse_pointer(const FilePath& path) {
                      "get the mesh by `git lfs pull`");
 }
 
-/// Reads a mesh. Tries again if its files do not fit together and another process has just written there.
+/// Reads a mesh. Tries again if its files do not fit together and their folder has just been written to.
 Mesh read_together(const FilePath& path, const Format& format, Notes& notes) {
   constexpr int kAttempts = 20;
   constexpr std::chrono::milliseconds kPause{50};
@@ -145,8 +145,7 @@ Mesh read_from_memory(std::string bytes, const ReadOptions& options) {
   return read_checked({name, store}, *format, options, is_as_stored ? 0 : stored);
 }
 
-/// Returns the new positions of all cells. `of_kept`: positions of the kept cells; the other cells come
-/// after.
+/// Returns the new positions of all cells: first the kept cells, in the order `of_kept`, then the others.
 Permutation places_of(const std::vector<Index>& kept, const Permutation& of_kept, Index count) {
   std::vector<Index> old_to_new(static_cast<std::size_t>(count), -1);
   for (Index k = 0; k < index_size(kept); ++k) old_to_new[kept[k]] = of_kept.old_to_new()[k];

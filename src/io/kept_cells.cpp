@@ -33,7 +33,7 @@ struct TypeCount {
 /// The types of some cells, in the order in which they first appear.
 struct TypeCounts {
   std::vector<TypeCount> types;
-  std::size_t last = 0;  ///< index in `types` of the last type added, which neighbours mostly have, too
+  std::size_t last = 0;  ///< index in `types` of the type added last: the next cell mostly has this type
 
   void add(Shape shape, int vertices, Index count) {
     if (types.empty() || !types[last].is(shape, vertices)) {
@@ -70,8 +70,8 @@ int highest_dimension_of(const std::vector<TypeCount>& types) {
   return highest;
 }
 
-/// Returns the types that the format does not hold and that a file leaves out; empty if the format lacks a
-/// type of the highest dimension.
+/// Returns the types that a file leaves out because the format does not hold them; empty if the format lacks
+/// a type of the highest dimension.
 std::vector<TypeCount> types_left_out(const Mesh& mesh, const std::vector<TypeCount>& types,
                                       const Format& format) {
   const int highest = highest_dimension_of(types);
@@ -98,7 +98,7 @@ std::vector<Index> cells_but(const Mesh& mesh, const std::vector<TypeCount>& lef
   return kept;
 }
 
-/// Returns "1 line", "212 triangles", "7 triangles of 6 vertices".
+/// Returns, for example, "1 line", "212 triangles" or "7 triangles of 6 vertices".
 std::string in_words(const TypeCount& type) {
   constexpr std::array<std::string_view, kShapes> kPlurals{
       "vertices",  "lines",        "triangles", "quads",    "tetrahedra",      "pyramids", "wedges",

@@ -10,8 +10,8 @@
 namespace meshorder {
 
 // Selects the cells of a mesh that go into a file. If the format cannot hold all cells of the highest
-// dimension, the mesh is refused. Cells of lower dimensions that it cannot hold are left out. All vertices
-// stay.
+// dimension, the mesh is refused. Cells of lower dimensions that the format cannot hold are left out. All
+// vertices stay.
 
 /// Keeps the cells at these ascending positions with their arrays, sets, ids and blocks. Removes and notes
 /// the sets and partial arrays that have no cells left. O(size of the mesh).
@@ -19,9 +19,9 @@ void keep_cells_at(Mesh& mesh, const std::vector<Index>& kept, Notes& notes);
 
 /// Returns the positions of the cells to be written in the format, ascending: all cells if `strict` or if the
 /// format lacks a type of the highest dimension. Notes the cells left out, a line for each type. Throws
-/// InputError with the fitting formats if a file of the format cannot hold the cells to be written: it cannot
-/// hold a type, or types conflict. O(cells); copies the mesh if cells are left out and the format has a
-/// `conflict`.
+/// InputError, which names the fitting formats, if a file of the format cannot hold the cells to be written:
+/// the format lacks a type, or types conflict. O(cells); copies the mesh if cells are left out and the format
+/// has a `conflict`.
 std::vector<Index> cells_to_write(const Mesh& mesh, const FilePath& path, const Format& format, bool strict,
                                   Notes& notes);
 

@@ -17,8 +17,8 @@ struct Labels {
   [[nodiscard]] bool any() const noexcept { return !values.empty(); }
 };
 
-/// Returns the labels of vertices or cells, or the numbers of an array of another name. Ignores an array
-/// whose rows are not single integers.
+/// Returns the labels of vertices or cells from the array `name`. Ignores an array whose rows are not single
+/// integers.
 Labels labels_of(const Mesh& mesh, Association association, std::string_view name = kLabel);
 
 /// Returns the array that `labels_of` uses, or nullptr.
@@ -27,7 +27,7 @@ const DataArray* label_array(const Mesh& mesh, Association association, std::str
 /// Notes that all arrays but the labels of cells are not written, for formats that hold no other arrays.
 void note_arrays_beside_cell_labels(const Mesh& mesh, std::string_view format, Notes& notes);
 
-/// Notes that SU2's markers with numbers as names, which are labels in the mesh, are written as `what`.
+/// Notes, for a mesh from SU2, that its labels (markers named by numbers) are written as `what`.
 void note_number_markers(const Mesh& mesh, std::string_view what, Notes& notes);
 
 /// Converts labels to the values of an array: 32-bit integers if all fit.

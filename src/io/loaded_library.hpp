@@ -5,12 +5,12 @@
 
 namespace meshorder {
 
-/// A shared library that is loaded on first use. The libraries of file formats load 40 other libraries, which
-/// would take half of the time of a small task. For objects with static storage duration.
+/// A shared library that is loaded on first use, for objects with static storage duration. The libraries of
+/// file formats load 40 others; loading all at the start would take half of the time of a small task.
 class LoadedLibrary {
  public:
   /// @param name  as users know it: "HDF5"
-  /// @param file  name that the system's loader finds it by: "libhdf5.so.103"
+  /// @param file  name by which the system's loader finds the library: "libhdf5.so.103"
   constexpr LoadedLibrary(const char* name, const char* file) noexcept : name_(name), file_(file) {}
 
   /// Loads the library, unless it is loaded already. Throws Unavailable if the loader does not find it.
@@ -66,7 +66,7 @@ class LoadedVariable : public LoadedSymbol {
 }  // namespace meshorder
 
 // Declares a function or a variable of the C library `library` in the enclosing namespace, where it hides the
-// library's own declaration. If a header defines `name` as a macro for another name, that name is declared.
+// library's own declaration. If a header defines `name` as a macro, the name that it expands to is declared.
 // NOLINTBEGIN(bugprone-macro-parentheses): names are declared
 #define MESHORDER_LOADED_FUNCTION(library, name) MESHORDER_LOADED_FUNCTION_AS(library, name)
 #define MESHORDER_LOADED_FUNCTION_AS(library, name) \

@@ -47,7 +47,7 @@ struct MeshPart {
 
   /// Where the rows of an array of `mesh` are in the file.
   struct ArrayRows {
-    bool is_partial = false;  ///< rows for some vertices or cells only, perhaps none in this part
+    bool is_partial = false;  ///< only some vertices or cells have rows; this part may have none
     /// Position of each row in the file's list, ascending; empty if that list ascends by vertex or cell.
     std::vector<Index> entries = {};
   };

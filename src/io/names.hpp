@@ -13,7 +13,7 @@
 
 namespace meshorder {
 
-/// Finds free names by numbering taken ones.
+/// Finds free names: numbers a wanted name that is taken.
 class NameNumbers {
  public:
   /// Takes and returns the first of `wanted`, `numbered(2)`, `numbered(3)` … that is free.
@@ -61,14 +61,14 @@ std::string add_named(Mesh& mesh, EntitySet set, UniqueNames& names);
 /// Returns the name with "_" in place of control characters and of the characters in `forbidden`. O(size).
 std::string plain_name(std::string_view name, std::string_view forbidden = {});
 
-/// Names that are unique in a file.
+/// Gives names that are unique in a file.
 class DistinctNames {
  public:
   /// `longest`: maximum size of a name in bytes, at least 12. Names are cut between characters of UTF-8.
   explicit DistinctNames(std::size_t longest = std::string::npos) : longest_(longest) {}
 
-  /// Takes and returns a free name: the wanted one, cut to the longest size, with a number at its end if it
-  /// is taken. O(log names), even if all calls want the same name.
+  /// Takes and returns a free name: `wanted`, cut to the maximum size; if this name is taken, it ends with a
+  /// number. O(log names), even if all calls want the same name.
   std::string take(std::string_view wanted);
 
  private:

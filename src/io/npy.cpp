@@ -27,8 +27,8 @@ void write_array(std::span<const T> values, const FilePath& path) {
   file.commit();
 }
 
-/// Returns the value after `'key':` in a header: the text before the next comma or brace; for a tuple, the
-/// text from its parenthesis on, without the closing one.
+/// Returns the value after `'key':` in a header: the text before the next comma or closing brace; a tuple
+/// includes its opening but not its closing parenthesis.
 std::string_view header_value(const Scanner& at, std::string_view header, std::string_view key) {
   const auto found = header.find("'" + std::string(key) + "'");
   const auto colon = header.find(':', found);

@@ -18,7 +18,7 @@ void write_npy(std::span<const std::int32_t> values, const FilePath& path);
 void write_npy(std::span<const std::int64_t> values, const FilePath& path);
 
 /// Reads a one-dimensional NumPy array of 32- or 64-bit integers. Unsigned integers are read as signed: the
-/// upper half of their range becomes negative. Throws Error, with the byte, for other files.
+/// upper half of their range becomes negative. Throws Error, which names the byte, for other files.
 std::vector<std::int64_t> read_npy(const FilePath& path);
 
 /// Reads the new position of each of `count` vertices or cells; `what` names them in the plural. Throws Error
@@ -37,7 +37,7 @@ struct NpyHeader {
 /// Returns the header of an array in C order: all bytes before the numbers. Its size is a multiple of 64.
 std::string npy_header(std::string_view type, std::span<const std::int64_t> shape);
 
-/// Reads the bytes before the first number. Throws Error, with the byte, if the file is not a NumPy file.
+/// Reads the bytes before the first number. Throws Error, which names the byte, for other files.
 NpyHeader read_npy_header(Scanner& file);
 
 }  // namespace meshorder

@@ -44,7 +44,7 @@ void write_down_ids(Mesh& mesh, bool of_vertices, bool of_cells) {
   }
 }
 
-/// Moves a valid mesh and updates its ids.
+/// Reorders a valid mesh and updates its ids.
 void move_with_ids(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids) {
   const bool has_vertex_ids = !mesh.vertex_ids.empty();
   const bool has_cell_ids = !mesh.cell_ids.empty();

@@ -23,12 +23,12 @@ struct VtuEncoding {
 /// One file of a .pvd collection.
 struct PvdEntry {
   double time = 0;   ///< s
-  std::string file;  ///< its path, relative to the folder of the collection
+  std::string file;  ///< path, relative to the collection's folder
 };
 
-/// Writes a .pvd collection, which lists files for different times and which ParaView opens as an animation.
-/// Throws Error if it cannot be written, InvalidArgument for a time that is not finite; leaves no partial
-/// file. O(entries). https://www.paraview.org/Wiki/ParaView/Data_formats
+/// Writes a .pvd collection: a list of files for different times, which ParaView opens as an animation.
+/// Throws Error if the list cannot be written, InvalidArgument for a time that is not finite; leaves no
+/// partial file. O(entries). https://www.paraview.org/Wiki/ParaView/Data_formats
 void write_pvd(std::span<const PvdEntry> entries, const FilePath& path);
 
 }  // namespace meshorder

@@ -8,15 +8,15 @@
 
 namespace meshorder {
 
-/// Returns the volume of the parallelepiped that three edges at the first corner of a cell span. It has the
-/// sign of the cell's volume if the cell is convex. Returns 0 for cells other than linear tetrahedra,
+/// Returns the signed volume of the parallelepiped spanned by three edges at a cell's first corner. Its sign
+/// is that of the cell's volume if the cell is convex. Returns 0 for cells other than linear tetrahedra,
 /// pyramids, wedges and hexahedra. O(1).
 double volume_at_first_corner(const std::vector<Point>& points, Shape shape, std::span<const Index> cell);
 
 /// Finds out from volumes how a file numbers its linear wedges.
 ///
 /// The first triangle of a wedge faces outward in the files of some programs and inward in those of others,
-/// and the files do not say which. Faces, normals and volumes depend on it; shape functions do not.
+/// and the files do not say which. Faces, normals and volumes depend on that; shape functions do not.
 class WedgeVote {
  public:
   /// `points`: the vertices of the cells; they must outlive this object.
@@ -26,12 +26,12 @@ class WedgeVote {
   /// hexahedra, pyramids and wedges. O(1).
   void add(Shape shape, std::span<const Index> cell);
 
-  /// Returns whether the first triangles of wedges face inward. They do if more than 20 of 21 wedges, read
-  /// that way, have volumes of the right sign: the sign of the other cells' volumes, or plus if there are no
-  /// other cells. Returns false if signs are mixed.
+  /// Returns whether the first triangles of wedges face inward: whether the volumes of wedges, read so, have
+  /// the sign of the other cells' volumes, or are positive if there are no other cells. A sign needs more
+  /// than 20 of 21 nonzero volumes; returns false if signs are mixed.
   [[nodiscard]] bool wedges_face_inward() const;
 
-  /// Returns 1 or −1 if more than 20 of 21 cells have volumes of that sign, else 0. Wedges count as if their
+  /// Returns 1 or −1 if more than 20 of 21 nonzero volumes have that sign, else 0. Wedges count as if their
   /// first triangles faced inward.
   [[nodiscard]] int sign_of_volumes() const;
 
@@ -41,7 +41,7 @@ class WedgeVote {
     Offset positive = 0;
     Offset negative = 0;
 
-    /// Returns 1 or −1 if more than 20 of 21 cells have volumes of that sign, else 0.
+    /// Returns 1 or −1 if more than 20 of 21 volumes have that sign, else 0.
     [[nodiscard]] int sign() const;
   };
 

@@ -31,8 +31,8 @@ std::size_t alignment_of(std::size_t bytes) {
   return bytes < kMinPaged ? 4096 : kHugePage;
 }
 
-/// Returns the offset in its page of the next large block of this thread. Offsets rotate per thread, so that
-/// any three large arrays that a thread makes one after another are apart (see kApart).
+/// Returns the offset within a page for this thread's next large block. Offsets rotate per thread: any three
+/// large arrays that a thread makes one after another are apart (see kApart).
 std::size_t next_colour() {
   thread_local std::size_t turn = 0;
   turn = (turn + 1) % kColours;

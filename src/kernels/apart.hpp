@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-/// The least distance, modulo 4096 bytes, of two arrays that a kernel reads and adds to by the same index.
+/// The least distance, modulo 4096 bytes, between the arrays that a kernel reads and adds to at one index.
 ///
 /// Processors first compare the low 12 bits of a load's address with those of earlier stores; on many, the
 /// load waits if the bits agree. If positions and forces both began at a page, a kernel that reads
@@ -21,8 +21,8 @@ inline constexpr std::size_t kApart = 1088;
 /// Returns whether the addresses differ by less than kApart modulo 4096.
 bool aliases(const void* a, const void* b) noexcept;
 
-/// Returns an empty vector with room for `count` entries. If the vector is large, its memory does not alias
-/// that of up to two other arrays: large vectors begin at three places of a page in turn (aligned.cpp).
+/// Returns an empty vector with room for `count` entries. A large vector does not alias up to two `others`:
+/// large vectors begin at three places of a page in turn (aligned.cpp).
 template <class T>
 AlignedVector<T> reserved_apart(std::size_t count, std::initializer_list<const void*> others) {
   AlignedVector<T> tries[3];

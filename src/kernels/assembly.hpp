@@ -7,14 +7,14 @@
 namespace meshorder {
 
 /// The positions of each simplex's blocks in a matrix: block (a, b) of simplex s, which couples its corners a
-/// and b, is block `blocks[(D + 1)² s + (D + 1) a + b]`; one cache line for a tetrahedron.
+/// and b, is block `blocks[(D + 1)² s + (D + 1) a + b]` of the matrix. A tetrahedron takes one cache line.
 struct AssemblyMap {
   int dimension = 0;
   AlignedVector<Index> blocks;
 };
 
 /// Returns the map of the simplices into a matrix of that pattern. Throws InvalidArgument if the pattern
-/// lacks a block. On all threads. O(simplices · log row length).
+/// lacks a block or has more blocks than kMaxIndex. On all threads. O(simplices · log row length).
 AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix);
 
 /// The map of one share of `owned_batches` (of rest.vertices). It has the blocks of the share's boundary

@@ -36,7 +36,7 @@ HWY_INLINE LameLanes<Lanes> load_lame(const ElasticPass& pass, Offset batch, Ind
   return {Lanes::load(pass.mu + place), Lanes::load(pass.lambda + place)};
 }
 
-/// The blocks of the matrix that a batch of a pass adds to, and the blocks that the next batch adds to.
+/// The numbers of the matrix's blocks to which a batch of a pass adds, and those of the next batch.
 struct BatchBlocks {
   const Index* blocks = nullptr;
   const Index* next = nullptr;
@@ -44,7 +44,7 @@ struct BatchBlocks {
   Index next_count = 0;
 };
 
-/// Returns the blocks of batch number i of the `batches` batches of the pass.
+/// Returns the blocks of batch i in a pass over `batches` batches.
 template <int D>
 HWY_INLINE BatchBlocks blocks_of(const ElasticPass& pass, Offset i, Offset batches) {
   constexpr Offset kBlocks = kBatch * (D + 1) * (D + 1);

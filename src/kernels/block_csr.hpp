@@ -39,8 +39,8 @@ using BlockCsr = BlockCsrOf<double>;
 /// Returns the zero matrix with a block for every vertex and for both directions of every edge. O(n + edges).
 BlockCsr zero_block_csr(const CsrGraph& graph);
 
-/// Copies the matrix to `result` with its values rounded to float, reusing the memory of `result`. On all
-/// threads. O(blocks).
+/// Copies the matrix to `result`, whose memory is reused, and rounds the values to float. On all threads.
+/// O(blocks).
 void round_to_single(const BlockCsr& matrix, BlockCsrOf<float>& result);
 
 /// Computes y = A x for a matrix in double or float; sums are in double. x and y hold 3 doubles for each

@@ -16,7 +16,7 @@ namespace meshorder::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_MAX_BYTES >= 32
-/// Sums a row's blocks times the vector. Each of a block's nine products has its own sum: adding three
+/// The sums of a row's blocks times the vector. Each of a block's nine products has its own sum: adding three
 /// products to one sum would make additions wait for each other. The first eight sums are in vectors.
 struct RowSums {
   using Tag = hn::CappedTag<double, 8>;

@@ -141,7 +141,7 @@ struct CorotationalTangent {
   }
 
   HWY_INLINE void block(int a, int b, Value (&k)[9]) const {
-    // T [p_b]×, whose columns are −T's rows × p_b; then [p_a]×ᵀ times that
+    // T [p_b]×, whose row i is (row i of T) × p_b; then [p_a]×ᵀ times this matrix
     Value turned[3][3];
     MESHORDER_UNROLL
     for (int i = 0; i < 3; ++i) {

@@ -27,17 +27,17 @@ struct Stiffness {
   double scale = 1.0;
 };
 
-/// Adds −∂E/∂x to `forces`, in the layout of padded_positions, unless it is empty. Adds scale · K to the
-/// matrix of `stiffness`, unless it is null; K is ∂²E/∂x² or the approximation that `elasticity.tangent`
-/// names. K and its diagonal blocks are symmetric to the last bit. One pass over the simplices, in batches,
-/// by the best vector instructions of the processor. The rounding of sums depends only on the number of lanes
-/// of these instructions. O(simplices).
+/// Adds −∂E/∂x to `forces`, in the layout of padded_positions, unless `forces` is empty. Unless `stiffness`
+/// is null, adds scale · K to its matrix; K is ∂²E/∂x² or the approximation that `elasticity.tangent` names.
+/// K and its diagonal blocks are symmetric to the last bit. One pass over the simplices, in batches, by the
+/// best vector instructions of the processor. The rounding of sums depends only on the number of lanes of
+/// these instructions. O(simplices).
 void add_elasticity(const RestShapes& rest, const Elasticity& elasticity, std::span<const double> positions,
                     std::span<double> forces, const Stiffness* stiffness);
 
-/// Adds the contributions of one share of `owned_batches` (of rest.vertices), with owned_blocks of the same
-/// share if there is a stiffness, so that threads can share the work. All shares together give the same bits
-/// as one pass. Forces and matrix must have room for the spare vertices and blocks.
+/// Adds the contributions of one share of `owned_batches` (of rest.vertices), so that threads can divide the
+/// work. `boundary`: owned_blocks of this share; unused without a stiffness. All shares together give the
+/// same bits as one pass. Forces and matrix must have room for the spare vertices and blocks.
 void add_elasticity(const RestShapes& rest, const Elasticity& elasticity, std::span<const double> positions,
                     std::span<double> forces, const Stiffness* stiffness, const OwnedBatches& share,
                     const OwnedBlocks& boundary);

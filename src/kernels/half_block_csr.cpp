@@ -37,7 +37,8 @@ class HalfRow {
     row2_ = hn::MulAdd(load_four(block + 6), factors, row2_);
   }
 
-  /// Adds a block to this row and, transposed, to `column_sum`, the padded sum of the row of its column.
+  /// Adds a block to this row and, transposed, to `column_sum`: the padded sum of the row with the number of
+  /// the block's column.
   template <class Value>
   HWY_INLINE void add_both(const Value* block, const double* p, double* column_sum) {
     const Tag d;

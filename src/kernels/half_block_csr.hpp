@@ -23,8 +23,8 @@ template <class Value>
 struct HalfBlockCsrOf {
   std::vector<Index> slabs{0};     ///< bounds of the slabs
   std::vector<Offset> offsets{0};  ///< 2 n + 1
-  std::vector<Index> columns;      ///< then kSpareColumns zeros, because columns are read ahead
-  AlignedVector<Value> values;     ///< then one spare number, because vector loads read past the end
+  std::vector<Index> columns;      ///< and kSpareColumns zeros at the end, because columns are read ahead
+  AlignedVector<Value> values;     ///< and a number at the end, because vector loads read past the blocks
 
   static constexpr Offset kSpareColumns = 64;
 
@@ -43,9 +43,9 @@ std::vector<Index> slabs_of(const BlockCsr& matrix);
 /// and its mirror image are both stored. O(blocks) time; reads only the columns.
 double share_between_slabs(const BlockCsr& matrix);
 
-/// Copies a matrix to `result`, reusing its memory; rounds the values if Value is float. The matrix and its
-/// pattern must be symmetric to the last bit: blocks below the diagonal within a slab are not read. On all
-/// threads. O(blocks).
+/// Copies a matrix to `result`, whose memory is reused; rounds the values if Value is float. The matrix and
+/// its pattern must be symmetric to the last bit: blocks below the diagonal within a slab are not read. On
+/// all threads. O(blocks).
 template <class Value>
 void store_half(const BlockCsr& matrix, HalfBlockCsrOf<Value>& result);
 

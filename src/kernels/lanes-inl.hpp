@@ -23,8 +23,8 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Prefetches `Bytes` of an array that is read from front to back. Some processors do not prefetch it while a
-/// kernel gathers from other arrays (docs/evidence/benchmarks.md, Streams).
+/// Prefetches `Bytes` of an array that is read from front to back. Some processors do not prefetch such an
+/// array while a kernel gathers from other arrays (docs/evidence/benchmarks.md, Streams).
 template <Offset Bytes>
 HWY_INLINE void fetch_stream(const void* place) {
   constexpr Offset kLine = 64;

@@ -12,8 +12,8 @@ namespace meshorder {
 enum class MaterialModel : std::uint8_t {
   corotational,  ///< μ‖F − R‖² + ½λ tr²(RᵀF − I), R the rotation closest to F (Müller, Gross 2004)
   stvk,          ///< Saint Venant–Kirchhoff: μ E:E + ½λ tr(E)², E = ½(FᵀF − I)
-  /// Stable Neo-Hookean (Smith, De Goes, Kim 2018): ½μ'(‖F‖² − 3) + ½λ'(det F − α)² − ½μ' log(‖F‖² + 1) minus
-  /// its value at rest, α = 1 + ¾ μ'/λ'. The logarithm keeps a collapsed element from resting at F = 0.
+  /// Stable Neo-Hookean (Smith, De Goes, Kim 2018): ψ(F) − ψ(I) with ψ = ½μ'(‖F‖² − 3) + ½λ'(det F − α)² −
+  /// ½μ' log(‖F‖² + 1), α = 1 + ¾ μ'/λ'. The logarithm keeps a collapsed element from resting at F = 0.
   /// μ' = 4/3 μ and λ' = λ + 5/6 μ make it Hooke's law with Lamé's μ and λ near rest.
   neo_hookean,
 };
@@ -46,7 +46,7 @@ struct Lame {
   double mu = 0.0;
   double lambda = 0.0;
 
-  /// μ = E / 2(1 + ν), λ = E ν / ((1 + ν)(1 − 2ν)).
+  /// Returns μ = E / (2(1 + ν)) and λ = E ν / ((1 + ν)(1 − 2ν)).
   static Lame from_young(double young, double poisson) {
     return {young / (2.0 * (1.0 + poisson)), young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))};
   }
@@ -57,8 +57,7 @@ struct Elasticity {
   MaterialModel model = MaterialModel::corotational;
   Tangent tangent = Tangent::exact;
   Lame lame;  ///< parameters of all simplices, if `mu` and `lambda` are empty
-  /// If simplices have different parameters: entry s is that of simplex s; padded to whole batches (see
-  /// RestShapes).
+  /// Entry s is for simplex s; padded to whole batches (see RestShapes). Empty if `lame` is for all.
   AlignedVector<double> mu, lambda;
 };
 

@@ -35,7 +35,7 @@ struct OwnedBatches {
 /// are the offsets of the compressed rows. O(parts · log rows).
 std::vector<Index> balanced_ranges(std::span<const Offset> offsets, Index parts);
 
-/// Sets `owners` to the numbers of the ranges of `bounds` that contain the vertices, each once, ascending.
+/// Sets `owners` to the numbers of all ranges with a vertex, each once, ascending; `bounds` has the ranges.
 /// O(vertices · log parts).
 void owners_of(std::span<const Index> vertices, std::span<const Index> bounds, std::vector<Index>& owners);
 

@@ -12,12 +12,12 @@
 // show how much most users gain by an order of a mesh. The other kernels in this folder are tuned, and run
 // about equally fast in all good orders.
 //
-// Arrays of positions and forces hold x, y, z of each vertex side by side. Functions add forces and matrix
-// entries to the values in the output array.
+// Arrays of positions and forces hold x, y, z of each vertex side by side. Forces and matrix entries are
+// added to the values in the output array.
 namespace meshorder::plain {
 
-/// `AllVertices` and `VertexRange` are the vertices that a thread adds to. When threads share a loop over
-/// elements or edges, each thread computes the elements or edges that touch a vertex of its range, and adds
+/// The vertices to which a thread adds: `AllVertices`, or a `VertexRange`. When threads share a loop over
+/// elements or edges, each thread is given the elements or edges that touch a vertex of its range, and adds
 /// only to vertices of its range.
 struct AllVertices {
   [[nodiscard]] static constexpr bool has(Index /*v*/) { return true; }

@@ -35,9 +35,9 @@ struct SimplexMaterials {
 SimplexMaterials uniform_material(const Material& material);
 
 /// Returns the materials of simplices whose cells are grouped: the materials of `regions` in the cells of
-/// these regions, `elsewhere` in all other cells. Throws InvalidArgument for numbers out of range, for a
-/// grouping of vertices or of another mesh, for a region given twice, and for a region without simplices; the
-/// message for the latter lists the regions that have simplices. O(simplices + regions · groups).
+/// these regions, `elsewhere` in all other cells. Throws InvalidArgument for numbers out of range, simplices
+/// that do not name their cells, a grouping of vertices or of another mesh, a region given twice, and a
+/// region without simplices; the message then lists regions that have some. O(simplices + regions · groups).
 SimplexMaterials materials_by_region(const Simplices& simplices, const Grouping& grouping,
                                      const Material& elsewhere, const std::vector<RegionMaterial>& regions);
 

@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// Computes the rotations closest to any matrices. The unit quaternion q of such a rotation maximises qᵀN q,
+/// Computes the rotations closest to arbitrary matrices. Such a rotation's unit quaternion q maximises qᵀN q,
 /// where N is a symmetric 4×4 matrix linear in F (Davenport; Horn 1987). So q is an eigenvector of the
 /// largest eigenvalue of N.
 template <class Lanes>

@@ -38,12 +38,12 @@ inline std::size_t simd_version(std::int64_t targets) {
 
 }  // namespace meshorder
 
-/// Makes the table of the versions of a function that foreach_target.h has compiled.
+/// Makes the table of a function's versions, which foreach_target.h has compiled.
 #define MESHORDER_SIMD_VERSIONS(function)                                                     \
   constexpr std::array<decltype(&HWY_STATIC_DISPATCH(function)), HWY_MAX_DYNAMIC_TARGETS + 1> \
       function##_versions {                                                                   \
     HWY_CHOOSE_TARGET_LIST(function), HWY_CHOOSE_FALLBACK(function)                           \
   }
 
-/// The version for this processor.
+/// The function's version for this processor.
 #define MESHORDER_SIMD(function) (*function##_versions[::meshorder::simd_version(HWY_TARGETS)])

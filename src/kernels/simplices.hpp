@@ -19,9 +19,9 @@ inline constexpr Index kBatch = 8;
 /// X₀ … X_D are the rest corners. Dₘ has the columns X_a − X₀ in the simplex's own orthonormal frame, built
 /// by Gram–Schmidt from these vectors; Dₘ and its inverse are upper triangular. Isotropic laws do not depend
 /// on the frame, so a tetrahedron takes 56 bytes instead of 80. The frame of a tetrahedron is right-handed.
-/// If its rest corners are in negative orientation, the last diagonal entry is negative. So for every
-/// tetrahedron, det F > 0 means that it is not inverted. A simplex that is flat up to rounding errors has
-/// volume 0, and Dₘ⁻¹ is set to 0. Volumes are never negative.
+/// If its rest corners are in negative orientation, the last diagonal entry of Dₘ is negative. So for every
+/// tetrahedron, det F > 0 means that it is not inverted. A simplex that is flat up to rounding errors gets
+/// the volume 0 and Dₘ⁻¹ = 0. Volumes are never negative.
 struct RestShapes {
   int dimension = 0;
   Offset count = 0;               ///< number of simplices

@@ -22,9 +22,9 @@ struct Caches {
   bool operator==(const Caches&) const = default;
 };
 
-/// Returns caches of the given sizes, "48K,1M,32M", from the smallest level to the largest: whole numbers of
-/// bytes, or of 2^10, 2^20 or 2^30 bytes with K, M or G. Throws InvalidArgument if a part of the text is not
-/// a size, is not a multiple of kLineBytes or is not larger than the size before it.
+/// Parses cache sizes such as "48K,1M,32M", from the smallest level to the largest: whole numbers of bytes,
+/// or of 2^10, 2^20 or 2^30 bytes with K, M or G. Throws InvalidArgument if a part of the text is not a
+/// size, is not a multiple of kLineBytes or is not larger than the size before it.
 Caches parse_cache_sizes(std::string_view text);
 
 /// Returns the sizes as text that parse_cache_sizes reads, "48K,1M,32M".

@@ -18,7 +18,7 @@ constexpr double kOfDegree = 0.01;
 constexpr double kResidual = 1e-8;
 constexpr int kMostIterations = 1000;
 
-/// One forward and one backward sweep of Gauss and Seidel, as a preconditioner for Eigen's solvers.
+/// One forward and one backward Gauss-Seidel sweep, as a preconditioner for Eigen's solvers.
 class SymmetricGaussSeidel {
  public:
   using StorageIndex = Matrix::StorageIndex;
@@ -44,7 +44,7 @@ class SymmetricGaussSeidel {
   Vector diagonal_;
 };
 
-/// Returns the shifted Laplacian in a new order; the entries of a column ascend.
+/// Returns the graph's Laplacian in a new order, with a shift of the diagonal.
 Matrix laplacian(GraphRef graph, const Permutation& order) {
   const CsrGraph moved = renumbered(graph, order.old_to_new());
   const Index n = moved.size();

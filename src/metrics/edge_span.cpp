@@ -26,7 +26,7 @@ void for_each_span(GraphRef graph, PlaceOf place_of, Index begin, Index end, Vis
   }
 }
 
-/// Calls `call(place)` with a function that returns the new number of a vertex. `place_of` as in
+/// Calls `call(place)`, where `place(v)` returns the new number of a vertex. `place_of` as in
 /// `sampled_edge_span`.
 template <class Call>
 auto with_places(std::span<const Index> place_of, Call call) {
@@ -52,11 +52,11 @@ std::vector<Offset> histogram(GraphRef graph, const Permutation& order, BinOf bi
   return bins;
 }
 
-/// Returns the spans of all edges. `place_of` as in `sampled_edge_span`.
+/// Returns the statistics of all edges' spans. `place_of` as in `sampled_edge_span`.
 EdgeSpan exact_span(GraphRef graph, std::span<const Index> place_of) {
   EdgeSpan result;
   if (graph.neighbours.empty()) return result;
-  // sums by span, not by edge, do not depend on how the vertices are numbered
+  // summed by span, not by edge: the result does not depend on the vertices' old numbers
   std::vector<Offset> edges_of_span(graph.size(), 0);
   for_each_span(graph, place_of, [&](Index span) { ++edges_of_span[span]; });
   double sum = 0;

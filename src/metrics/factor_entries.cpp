@@ -15,7 +15,7 @@ constexpr Index kNoPlace = -1;
 /// factorization).
 std::vector<Index> elimination_tree(GraphRef graph, const Permutation& order) {
   std::vector<Index> parent(static_cast<std::size_t>(graph.size()), kNoPlace);
-  std::vector<Index> ancestor(parent);  // in the tree found so far, with shortened paths
+  std::vector<Index> ancestor(parent);  // of each node in the tree so far, by shortened paths
   for (Index row = 0; row < graph.size(); ++row) {
     poll_in_loop(row);
     for (const Index neighbour : graph[order.new_to_old()[row]]) {
@@ -30,7 +30,7 @@ std::vector<Index> elimination_tree(GraphRef graph, const Permutation& order) {
   return parent;
 }
 
-/// A tree in which each node has a larger number than its descendants, which are numbered consecutively.
+/// A tree numbered in postorder: the numbers of a node's descendants directly precede the node's number.
 struct Postordered {
   std::vector<Index> number;            ///< number of each node of the given tree
   std::vector<Index> parent;            ///< parent of each node, by number
@@ -38,7 +38,7 @@ struct Postordered {
   std::vector<Index> depth;             ///< depth of each node, by number; 0 for roots
 };
 
-/// Numbers a tree in postorder. `parent` has for each node its parent, a later node, or kNoPlace.
+/// Numbers a tree in postorder. `parent[k]`: the parent of node k, which is a later node, or kNoPlace.
 Postordered postordered(std::span<const Index> parent) {
   const Index n = index_size(parent);
   std::vector<Index> size(parent.size(), 1);
@@ -50,7 +50,7 @@ Postordered postordered(std::span<const Index> parent) {
   tree.parent.resize(parent.size());
   tree.first_descendant.resize(parent.size());
   tree.depth.resize(parent.size());
-  std::vector<Index> next(parent.size());  // the first number in the subtree of a node's next child
+  std::vector<Index> next(parent.size());  // first number of the subtree of each node's next child
   Index next_of_roots = 0;
   for (Index k = n - 1; k >= 0; --k) {
     Index& first = parent[k] == kNoPlace ? next_of_roots : next[parent[k]];
@@ -95,8 +95,8 @@ Offset factor_entries(GraphRef graph, const Permutation& order) {
   std::vector<Index> vertex(static_cast<std::size_t>(n));
   for (Index k = 0; k < n; ++k) vertex[tree.number[k]] = order.new_to_old()[k];
 
-  // The entries of a row are the nodes of a subtree below it. They are counted as paths from the leaves of
-  // the subtree to the row; each path is counted up to the node where it meets the previous path.
+  // The entries of a row are the nodes of a subtree below the row's node. They are counted leaf by leaf: the
+  // path from the leaf towards the row, up to the node where it meets the path from the previous leaf.
   Offset entries = 0;
   std::vector<Index> last_neighbour(static_cast<std::size_t>(n), kNoPlace);
   std::vector<Index> last_leaf(static_cast<std::size_t>(n), kNoPlace);

@@ -29,7 +29,7 @@ struct Touches {
   [[nodiscard]] double jump_share() const { return lines > 0 ? static_cast<double>(jumps) / lines : 0; }
 };
 
-/// Counts the first touches of lines in a window of rows, and those first touches that are jumps.
+/// Counts the first touches of lines in a window of rows, and how many of them are jumps.
 class FirstTouches {
  public:
   FirstTouches(GraphRef graph, const Permutation& order)
@@ -82,7 +82,7 @@ class FirstTouches {
 
   GraphRef graph_;
   const Permutation& order_;
-  std::vector<Index> touched_;  ///< time when each line was first touched, −1 for never, 0 before the window
+  std::vector<Index> touched_;  ///< time of each line's first touch; −1: never, 0: before the window
   Index time_ = kRecent + 1;
   std::vector<Index> found_;
 };

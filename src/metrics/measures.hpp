@@ -23,20 +23,20 @@ struct Iterations {
   bool operator==(const Iterations&) const = default;
 };
 
-/// Returns how many iterations are needed, with each of two preconditioners that depend on the order, until
-/// the residual is 1e-8 of the right side. The matrix is the Laplacian of the graph in that order, with a
-/// hundredth of the mean degree added to its diagonal. The right side is the same in every order, vertex by
-/// vertex. More than 1,000 iterations count as 1,000. O(entries · iterations), and 40 bytes an entry.
+/// Returns how many iterations each of two preconditioners, which depend on the order, needs until the
+/// residual is 1e-8 of the right side. The matrix is the Laplacian of the graph in that order, with a
+/// hundredth of the mean degree added to its diagonal. A vertex's entry of the right side is the same in
+/// every order. More than 1,000 iterations count as 1,000. O(entries · iterations), and 40 bytes an entry.
 Iterations iterations_in(GraphRef graph, const Permutation& order);
 
-/// Returns the entries below the diagonal of the Cholesky factor of a matrix with this pattern, whose rows
-/// and columns are in the given order: what a sparse direct solver stores, if no entry cancels. They include
-/// the entries of the matrix. O(n + entries · α(n)), without the factor's pattern (Gilbert, Ng, Peyton 1994,
-/// An efficient algorithm to compute row and column counts for sparse Cholesky factorization).
+/// Returns how many entries below the diagonal the Cholesky factor has, for a matrix with this pattern in the
+/// given order: what a sparse direct solver stores, if no entry cancels. Includes the entries of the matrix.
+/// O(n + entries of the graph · α(n)), without the factor's pattern (Gilbert, Ng, Peyton 1994, An efficient
+/// algorithm to compute row and column counts for sparse Cholesky factorization).
 Offset factor_entries(GraphRef graph, const Permutation& order);
 
-/// Returns the share of a vector's lines, of 8 entries each, whose first touch in a sweep over the rows of a
-/// matrix is a jump. The first touch of a line is a jump unless one of the three lines before it is among the
+/// Sweeps over the rows of a matrix and returns the share of the vector's lines (8 entries each) whose first
+/// touch is a jump. The first touch of a line is a jump unless one of the three lines before it is among the
 /// last 32 lines that were touched for the first time. Rows are in the given order, the entries of a row in
 /// the order of their columns.
 ///

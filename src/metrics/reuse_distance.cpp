@@ -18,7 +18,7 @@ constexpr int kFineBits = 7;
 constexpr std::uint32_t kWord = 64;
 constexpr std::uint32_t kSisters = 16;
 
-/// Entry i of row k is 1 if i < k. Adding row k in vector registers avoids a loop up to k, whose end the
+/// Entry i of row k is 1 if i < k. Subtracting row k in vector registers avoids a loop up to k, whose end the
 /// processor would mispredict.
 constexpr auto kOneBefore = [] {
   std::array<std::array<std::uint32_t, kSisters>, kSisters> rows{};
@@ -69,7 +69,7 @@ ReuseHistogram ReuseHistogram::scaled(int halvings, double times) const {
   ReuseHistogram result;
   for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
     if (bins_[bin] == 0) continue;
-    // a distance of one more sampled line means 2^halvings more lines: take the middle of that range
+    // a sampled distance d means d · 2^halvings … (d + 1) · 2^halvings − 1 lines: take the middle
     const double distance = std::ldexp(middle_of(bin) + 0.5, halvings) - 0.5;
     const auto in_range = static_cast<Index>(std::min<double>(distance, kMaxIndex));
     result.bins_[bin_of(in_range)] += std::llround(times * static_cast<double>(bins_[bin]));
@@ -197,7 +197,7 @@ Index ReuseDistance::move_mark(Slot from, Slot to) {
   return static_cast<Index>(between + in_open);
 }
 
-/// Completes a word, and each node that ends with this word, when the next slot comes after them.
+/// Completes a word that ends before the next slot, and each node that ends with this word.
 void ReuseDistance::close_word(std::size_t word) {
   std::size_t node = word;
   for (std::size_t level = 0; level < levels_.size(); ++level) {

@@ -11,10 +11,10 @@
 namespace meshorder {
 
 /// Counts how often each reuse distance occurs in a stream of accesses to cache lines. The reuse distance is
-/// the number of other lines accessed since a line's last access. A fully associative cache of c lines that
-/// replaces the least recently used line misses the accesses of distance c and more, and the cold accesses,
-/// which are the first to a line (Mattson, Gecsei, Slutz and Traiger 1970: Evaluation techniques for storage
-/// hierarchies).
+/// the number of different other lines accessed since the line's last access. A fully associative cache of c
+/// lines that replaces the least recently used line misses the accesses of distance c and more, and the cold
+/// accesses: the first access to each line (Mattson, Gecsei, Slutz and Traiger 1970: Evaluation techniques
+/// for storage hierarchies).
 ///
 /// Distances below 256 are counted one by one, larger ones in 128 bins to each power of two.
 class ReuseHistogram {
@@ -54,12 +54,12 @@ class ReuseHistogram {
 /// back; gathered: at a place that depends on the mesh.
 enum class Access : bool { streamed, gathered };
 
-/// The accesses of a stream, as a processor's caches see them.
+/// Histograms of a stream: of all accesses, and of jumps.
 struct Reuse {
   ReuseHistogram all;
-  /// Gathered accesses of distance 512 (an L1 cache of 32 KB) or more that do not continue a stream: neither
-  /// of the two lines before the line is among the last 64 accesses of such a distance. Processors prefetch
-  /// the lines that continue a stream; a jump waits for the memory.
+  /// Gathered accesses that are far (cold, or of distance 512 or more: an L1 cache of 32 KB) and do not
+  /// continue a stream: neither of the two lines before the line is among the last 64 far accesses.
+  /// Processors prefetch the lines that continue a stream; a jump waits for the memory.
   ReuseHistogram jumps;
 
   bool operator==(const Reuse&) const = default;
@@ -67,19 +67,19 @@ struct Reuse {
 
 /// Measures the reuse distances of a stream, access by access, without storing the stream.
 ///
-/// Each access takes a slot, which is marked as long as it is the last access to its line. A distance is then
-/// the number of marks after a line's own (Bennett and Kruskal 1975, LRU stack processing). The marks are
-/// bits, counted by a tree with 16 children a node. An access goes up the tree only until its line's old and
-/// new slots meet: O(log distance) steps. When there are no more free slots, the marks are moved to the first
-/// slots. Memory: 13 bytes for each line.
+/// Each access takes the next slot; the slot of each line's last access is marked. A distance is then the
+/// number of marks after the line's own (Bennett and Kruskal 1975, LRU stack processing). The marks are bits,
+/// counted by a tree with 16 children a node. An access goes up the tree only until the paths of its line's
+/// old and new slots meet: O(log distance) steps. When there are no more free slots, the marks are moved to
+/// the first slots. Memory: 13 bytes for each line.
 class ReuseDistance {
  public:
   /// For accesses to lines 0 … lines − 1. If `halvings` > 0, these lines are a sample that ReuseSample has
   /// drawn, 2^-halvings of all lines. In each block of eleven lines only the last nine count, and an access
-  /// is far at a distance that is shorter by the factor 2^halvings.
+  /// is far from a distance of 512 / 2^halvings on.
   explicit ReuseDistance(Index lines, int halvings = 0);
 
-  /// Returns the distance, −1 for a cold access. Amortised O(1 + log distance).
+  /// Counts an access; returns its distance, −1 if cold. Amortised O(1 + log distance).
   ///
   /// @param streamed  in a sample: number of streamed accesses so far, to all lines
   Index access(Index line, Access how = Access::gathered, std::uint32_t streamed = 0);
@@ -97,10 +97,10 @@ class ReuseDistance {
   /// Returns the number of lines accessed so far.
   [[nodiscard]] Index distinct() const noexcept { return index_size(first_accesses_); }
 
-  /// Suppose the stream so far is repeated for ever: returns the counts of one repetition, any but the first.
-  /// No access is cold: the first access to a line in a repetition reuses the line from the repetition
-  /// before. Such an access is a jump if it is far and the line's cold access was a jump. Ends the
-  /// measurement. O(distinct lines · log distance).
+  /// Returns the counts of each later repetition if the stream so far is repeated for ever. No access is
+  /// cold: the first access to a line in a repetition reuses the line from the repetition before.
+  /// Such an access is a jump if it is far and the line's cold access was a jump. Ends the measurement.
+  /// O(distinct lines · log distance).
   [[nodiscard]] Reuse repeated() &&;
 
  private:
@@ -111,13 +111,13 @@ class ReuseDistance {
   static constexpr Index kSampledBlock = 11;
   static constexpr Index kUncounted = 2;  ///< number of lines at the start of a block that do not count
 
-  /// These two numbers are read together and are seldom in this machine's caches: store them side by side.
+  /// The last access to a line. Its two numbers are read together, mostly from memory: one record holds both.
   struct LastAccess {
     Slot slot = kNever;
-    std::uint32_t far = 0;  ///< number of the last far access; cold accesses count too
+    std::uint32_t far = 0;  ///< number of the last far access; cold accesses are far, too
   };
 
-  /// In a sample: numbers of far accesses before a line's last far access. A block is sampled as a whole, so
+  /// In a sample: numbers of far accesses up to a line's last far access. A block is sampled as a whole, so
   /// gathered accesses to the line's own block are counted exactly; gathered accesses to other blocks are
   /// estimated by the accesses to sampled blocks. Streamed accesses count as far.
   struct FarOfSample {

@@ -15,12 +15,12 @@ namespace meshorder {
 /// only in sampled lines is about the true distance times the share of lines that are sampled (Waldspurger,
 /// Park, Garthwaite and Ahmad 2015: Efficient MRC construction with SHARDS).
 ///
-/// The sample consists of blocks of eleven lines, chosen by a hash of their number. The last nine lines of a
-/// block count; the first two show whether a stream continues into these nine. No period of a kernel's
+/// The sample consists of blocks of eleven lines, chosen by a hash of the block's number. The last nine lines
+/// of a block count; the first two show whether a stream continues into these nine. No period of a kernel's
 /// arrays, such as the 9 lines of 8 matrix blocks, is a multiple of eleven. An access to a block that is not
-/// sampled costs only a hash. The same stream gives the same estimate on every run. Its error falls with the
-/// square roots of the number of sampled lines and of the cache's size: estimates for caches below about 100
-/// · 2^halvings lines are unreliable.
+/// sampled costs only a hash. The same stream gives the same estimate on every run. The estimate's error
+/// falls with the square roots of the number of sampled lines and of the cache's size: estimates for caches
+/// below about 100 · 2^halvings lines are unreliable.
 class ReuseSample {
  public:
   /// For accesses to lines 0 … lines − 1, of which 2^-halvings are sampled. With 0 halvings the estimate is
@@ -67,9 +67,8 @@ class ReuseSample {
  private:
   static constexpr Index kBlock = ReuseDistance::kSampledBlock;
 
-  /// A sampled access. It is measured 32 sampled accesses later, so that its data can be prefetched: at once
-  /// the entry of its block; 16 accesses later, when the line's number among the sampled lines is known, the
-  /// entry of its line.
+  /// A sampled access, which is measured 32 sampled accesses later. Its block's entry is prefetched at once;
+  /// its line's entry 16 sampled accesses later, when the line's number among the sampled lines is known.
   struct Waiting {
     Index line = 0;
     Access how = Access::gathered;
@@ -95,7 +94,7 @@ class ReuseSample {
 
   void measure_those_that_wait();
 
-  /// Decides by a hash of the block's number, so that a stream's stride cannot coincide with the sample's.
+  /// Returns whether a block is sampled, by a hash: no stride of a stream coincides with the sample's.
   [[nodiscard]] bool sampled(Index block) const noexcept {
     std::uint32_t bits = static_cast<std::uint32_t>(block) * 0x9e3779b1U;
     bits = (bits ^ bits >> 15U) * 0x85ebca6bU;

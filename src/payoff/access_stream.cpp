@@ -152,7 +152,7 @@ struct PolledSample {
 };
 
 /// Returns the halvings of a kernel's sample. A product gathers from few lines, so its sample is larger.
-/// Assembly gathers from many lines, so that of a large mesh is smaller.
+/// Assembly gathers from many lines, so its sample of a large mesh is smaller.
 int halvings_of(Kernel kernel, int halvings) {
   const bool is_large = halvings >= kLargeFrom;
   if (kernel == Kernel::spmv) return std::max(0, halvings - (is_large ? 1 : 2));

@@ -211,7 +211,7 @@ class AccessStream {
     }
   }
 
-  /// Visits, for each corner, the columns of row a that are searched and the value that is added to.
+  /// Visits, for each corner b of the element, the columns of row a up to b and the value in column b.
   template <class Visitor>
   void visit_row(Index a, std::span<const Index> element, Visitor& visitor) const {
     const Offset begin = row_begin(a);
@@ -222,7 +222,7 @@ class AccessStream {
     }
   }
 
-  /// Marks the rows of the matrix whose columns or values have a sampled line.
+  /// Returns which rows of the matrix have a sampled line of columns or values.
   template <class Visitor>
   [[nodiscard]] std::vector<bool> sampled_rows(const Visitor& visitor) const {
     std::vector<bool> rows(static_cast<std::size_t>(graph_.size()));
@@ -276,18 +276,18 @@ struct RunReuse : Reuse {
   Kernel kernel = Kernel::spmv;
   int dimension = 0;  ///< dimension of the simplices: 3 for tetrahedra
   /// Number of loops whose end a processor mispredicts: rows of a product, or searches of assembly in a row.
-  /// A loop is mispredicted if its length differs from the one predicted: the length that followed the last
-  /// time after the same eight lengths. 0 for other kernels.
+  /// A loop is mispredicted if its length differs from the length that last followed the same eight
+  /// lengths. 0 for other kernels.
   Offset turns = 0;
 
   bool operator==(const RunReuse&) const = default;
 };
 
-/// Returns the reuse of one run of a kernel that is repeated, any run but the first. O(accesses · log
-/// distance) time; about 13 bytes of memory for each line, a fifth of the kernel's own memory. With
-/// `halvings` > 0 the reuse is estimated from a share 2^-halvings of the lines (see ReuseSample), which is
-/// faster; products with a matrix use two halvings fewer. From four halvings on products use one halving
-/// fewer, assembly one more, and the turns of assembly are estimated, too. Two threads share assembly.
+/// Returns the reuse of any run but the first of a kernel that runs repeatedly. O(accesses · log distance)
+/// time; about 13 bytes of memory for each line, a fifth of the kernel's own memory. With `halvings` > 0 the
+/// reuse is estimated from a share 2^-halvings of the lines (see ReuseSample), which is faster; products with
+/// a matrix use two halvings fewer. From four halvings on, products use only one fewer, assembly uses one
+/// more, and the turns of assembly are estimated, too. Two threads share the work.
 RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings = 0);
 
 /// Returns the reuse of the product with a matrix that has these entries.

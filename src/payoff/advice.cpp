@@ -178,7 +178,7 @@ bool is_race(const AdviceOptions& options) { return options.race_of > 0 && optio
 
 bool measures(const AdviceOptions& options) { return is_race(options) || options.measure_within; }
 
-/// Computes the requested orders, and adds a candidate for each that differs from the others.
+/// Computes the requested orders as candidates; skips repeats in a race or without `options.methods`.
 void add_candidates(Advice& advice, Orders& orders, const Mesh& mesh, const AdviceOptions& options) {
   const CsrGraph& graph = orders.all.front().graph();
   for (const ReorderOptions& reordering : asked_for(mesh, graph, options)) {
@@ -217,7 +217,7 @@ void describe(Advice& advice, const Orders& orders) {
   });
 }
 
-/// Adds the times of all orders.
+/// Adds the measured times of all orders.
 void measure(Advice& advice, const Orders& orders, const AdviceOptions& options,
              const Stopwatch& since_call) {
   report("measure");

@@ -44,8 +44,8 @@ struct AdviceOptions {
       {};  ///< reuse is estimated from 2^-halvings of the lines; unset: `halvings_for`
   /// The reuse in the mesh's own order, if known; computed if unset.
   std::optional<KernelReuse> reuse_as_is = {};
-  /// Seconds after the call within which the kernels are timed, in the mesh's own order and in every
-  /// candidate, in as many rounds as fit but at least two; unset: they are not timed.
+  /// If set, the kernels are timed within this many seconds of the call, in the mesh's own order and in every
+  /// candidate: in as many rounds as fit, but at least two.
   std::optional<double> measure_within = {};
   /// If above 0, the number of candidates to keep: the first one, and those with the best predictions for
   /// `ordering.workload`. If `race_timer` is set, it times them and the mesh's own order for half a second

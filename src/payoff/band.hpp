@@ -8,7 +8,7 @@
 
 namespace meshorder {
 
-/// A synthetic mesh of the same size whose natural order streams: its kernel times are a reference.
+/// A synthetic mesh of a given mesh's size whose kernels read memory front to back: a reference for times.
 struct Band {
   Mesh mesh;
   CsrGraph graph;  ///< pass it to KernelInput as the vertex graph of the mesh

@@ -39,7 +39,7 @@ struct Runs {
   std::vector<Steadiness> steadiness = {};  ///< steadiness of each measurement
 };
 
-/// Returns the `halvings` for a lattice: 0 for small ones. For larger ones the reuse is estimated.
+/// Returns the `halvings` for a lattice: 0 for a small lattice; above 0, the reuse is estimated.
 int halvings_for_lattice(SimplicesRef simplices) { return simplices.size() < 50'000 ? 0 : 3; }
 
 /// Limits on the timing of orders.
@@ -58,7 +58,7 @@ struct Prepared {
 
   Prepared(const CalibrationLattice& lattice, std::span<const LatticeOrder> some) { add(lattice, some); }
 
-  /// Adds orders: orders the lattice, simulates the reuse and prepares the kernels, on all threads.
+  /// Adds orders: moves the lattice into each, simulates the reuse and prepares the kernels, on all threads.
   void add(const CalibrationLattice& lattice, std::span<const LatticeOrder> some) {
     const std::size_t first = benches.size();
     orders.insert(orders.end(), some.begin(), some.end());
@@ -206,8 +206,8 @@ void time_small(const CalibrationLattice& lattice, int number, double seconds, s
   }
 }
 
-/// Times the orders of a lattice one after another while there is time, but at least the best and the worst
-/// order; times these two on all threads as well. There is time until the stopwatch shows `seconds`.
+/// Times the orders of a lattice one after another while the next should end before the stopwatch shows
+/// `seconds`, but at least the best and the worst order. Times these two on all threads as well.
 void time_large(CalibrationLattice lattice, int number, const Stopwatch& since_start, double seconds,
                 std::span<Runs> runs) {
   std::vector<LatticeOrder>& orders = lattice.orders;
@@ -342,8 +342,8 @@ FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, co
   constexpr double kWeight = 0.0125;
   // The weight of the error that all runs of a lattice have in common.
   constexpr double kCommon = 0.5;
-  // The second unknown is the ratio of all costs to the costs of `like`. It has an equation for each cost, of
-  // this weight.
+  // The second unknown is the ratio of all costs to the costs of `like`. An equation for each cost, of this
+  // weight, sets the cost to that multiple.
   constexpr double kLike = 0.4;
   Rows rows{.columns = shares.columns + 2};
   std::vector<double> row(rows.columns);
@@ -423,8 +423,8 @@ Calibration measure_machine(const CalibrationEffort& effort) {
   constexpr Offset kBytesOfVertex = 4096;
   const Offset fitting = static_cast<Offset>(usable_memory() / 4) / kBytesOfVertex;
   const auto largest = static_cast<Index>(std::clamp<Offset>(fitting, 1000, effort.vertices));
-  // Numbers of rows of matrices that fill a part of the second cache or of the last one, so that
-  // streams miss one cache and hit the next.
+  // Returns the number of rows of a matrix that fills a part of the second or last cache, so that its streams
+  // miss one cache and hit the next.
   constexpr Offset kRowBytes = 180;
   const auto rows_in = [&](Offset bytes, double part) {
     const auto rows = static_cast<Offset>(part * static_cast<double>(bytes) / kRowBytes);

@@ -12,7 +12,7 @@
 
 namespace meshorder {
 
-/// How well the fit determines the costs, by kernel in the order of kKernels.
+/// Quality of the fit of the costs, by kernel in the order of kKernels.
 struct FitQuality {
   std::array<double, kKernels.size()> condition{};  ///< condition_number of the fit's equations
   /// The median relative difference between predicted and measured times of the problems.
@@ -47,7 +47,7 @@ struct Calibration {
 
 /// How thoroughly a machine is measured.
 struct CalibrationEffort {
-  double seconds = 16;  ///< each step is done once; repetitions begin only if they should end in time
+  double seconds = 16;  ///< each step is done once, and repeated only if that should end within this time
   Offset probed = Offset{256} << 20;  ///< size of the largest buffer that is read, bytes
   Index vertices = 200'000;           ///< number of vertices of the largest lattice
 };
@@ -86,11 +86,11 @@ using Latencies = std::array<double, 4>;
 /// of the difference between a load from memory and a load beyond the second size.
 Latencies latencies_beyond(const FoundCaches& found, const Caches& caches);
 
-/// Fits the costs of a kernel on a machine with such caches. Loads overlap, so a jump costs only a share of
+/// Fits the costs of a kernel on a machine with these caches. Loads overlap, so a jump costs only a share of
 /// its latency. An extra equation for each jump cost, with an eightieth of the weight of a run, says that all
 /// jumps cost the same share. These equations decide if the runs have too few jumps. The error that all runs
 /// of a lattice have in common has half the weight of each run's own error: costs serve to compare orders,
-/// and the rate of a memory that other programs use, too, changes from minute to minute.
+/// and the speed of memory that other programs also use changes from minute to minute.
 ///
 /// @param like  for runs on all threads: costs of the same kernel on one thread, or null. An extra equation
 ///              for each cost, with two fifths of the weight of a run, says that the cost is the one-thread

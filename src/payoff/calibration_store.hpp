@@ -48,7 +48,7 @@ std::filesystem::path save_calibration(const Calibration& calibration);
 std::string to_json_text(const Calibration& calibration);
 
 /// Reads the text of a calibration's file. Throws InvalidArgument if it is invalid; the message is the end of
-/// a sentence ("is no JSON").
+/// a sentence ("is not JSON").
 Calibration parse_calibration(const std::string& text);
 
 }  // namespace meshorder

@@ -26,7 +26,7 @@ struct KernelCosts {
   bool operator==(const KernelCosts&) const = default;
 };
 
-/// Numbers, one for each cost.
+/// A number for each cost of KernelCosts.
 using CostRow = std::array<double, 10>;
 
 /// Returns the costs as a row; as_costs is the inverse.
@@ -68,7 +68,7 @@ const CostModel& zen3_costs();
 /// rather than the milliseconds. O(levels · bins of the histograms). Throws InvalidArgument without caches.
 double predicted_ms(const RunReuse& reuse, const Caches& caches, const CostModel& model = zen3_costs());
 
-/// The same for all kernels.
+/// Predicts the milliseconds of all kernels in the same way.
 KernelMilliseconds predicted_ms(const KernelReuse& reuse, const Caches& caches,
                                 const CostModel& model = zen3_costs());
 

@@ -64,8 +64,8 @@ class KernelBench : public Polymorphic {
 
   /// Runs a part of a kernel from which the time of a whole run follows: it computes stretches of elements,
   /// spread evenly over the mesh, and clears the same share of the results. Returns the share of the elements
-  /// that ran; 0, without a run, for kernels without elements and for meshes of which a part would not be
-  /// like the whole. The results are incomplete; a product with such a matrix takes the time of any other.
+  /// that ran; 0, without a run, if the kernel has no elements or a part would not represent the mesh. The
+  /// results are incomplete; a product with such a matrix takes the usual time.
   double run_stretches(Kernel kernel);
 
   /// Returns the result of the kernel's last run, row by row: for spmv a product for each vertex, for
@@ -96,7 +96,7 @@ class KernelBench : public Polymorphic {
 /// matrix: they need 3×3 blocks or elements.
 std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const KernelInput& input, int threads = 1);
 
-/// The same for a mesh in its own order; also throws as `KernelInput`.
+/// Does the same for a mesh in its own order; also throws as `KernelInput`.
 inline std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const Mesh& mesh,
                                                     const CsrGraph& graph, int threads = 1) {
   return prepare_kernels(kernels, KernelInput(mesh, graph), threads);

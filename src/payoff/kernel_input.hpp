@@ -28,7 +28,7 @@ class KernelInput {
   [[nodiscard]] std::span<const Point> points() const noexcept { return points_; }
   [[nodiscard]] const CsrGraph& graph() const noexcept { return *graph_; }
   [[nodiscard]] SimplicesRef simplices() const noexcept { return simplices_; }
-  /// Returns the entries of a matrix; nothing for a mesh.
+  /// Returns the entries of a matrix; an empty pattern for a mesh.
   [[nodiscard]] const EntryPattern& pattern() const noexcept { return pattern_; }
   /// Returns the seconds that `moved` took to move points and simplices, or entries: a part of the cost of
   /// an order.

@@ -64,7 +64,7 @@ RunTime sample(KernelBench& bench, Kernel kernel, const Plan& plan) {
   });
 }
 
-/// Runs stretches of a kernel's elements, if it can; returns the duration of a whole run that follows.
+/// Runs stretches of a kernel's elements, if it can; returns the time of a whole run, computed from theirs.
 Plan plan_by_stretches(KernelBench& bench, Kernel kernel, const TimingOptions& options) {
   Plan plan;
   double share = 0;
@@ -73,7 +73,7 @@ Plan plan_by_stretches(KernelBench& bench, Kernel kernel, const TimingOptions& o
   return plan;
 }
 
-/// @param is_first  whether the kernel has not run yet
+/// Plans the samples of a kernel by a few runs. `is_first`: the kernel has not run yet.
 Plan plan_samples(KernelBench& bench, Kernel kernel, bool is_first, const TimingOptions& options) {
   constexpr double kMostRepeats = 1e5;
   constexpr std::size_t kMostRuns = 12;

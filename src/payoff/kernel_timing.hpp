@@ -11,10 +11,10 @@
 
 namespace meshorder {
 
-/// How long and how often kernels run.
+/// Options for timing kernels.
 struct TimingOptions {
-  /// No round begins that is expected to end later than this. First runs, which plan the samples, are
-  /// counted; preparing the orders is not.
+  /// A round begins only if it should end within this time. The time includes the first runs, which plan the
+  /// samples, but not the preparation of the orders.
   double budget_seconds = 12.0;
   int min_rounds = 3;  ///< these rounds run even if they exceed the budget
   /// Time a kernel by stretches of the elements in orders in which it is plainly slow, see
@@ -24,8 +24,7 @@ struct TimingOptions {
   /// Least length of a sample. A kernel that takes less is repeated, as in a solver, and finds the data of
   /// its last run in the caches.
   double sample_seconds = 0.02;
-  /// Count the calling thread's processor time instead of elapsed time: for
-  /// kernels on one thread.
+  /// Count the calling thread's processor time instead of elapsed time: for kernels on one thread.
   bool processor_time = false;
   /// For time_orders: memory for all prepared orders together; 0: half of the machine's memory.
   std::size_t memory_bytes = 0;
@@ -62,18 +61,18 @@ using PrepareOrder = std::function<std::unique_ptr<KernelBench>(Index)>;
 /// Times every kernel of the prepared orders, which must all run the same kernels, in interleaved rounds, so
 /// that changes of the machine's speed affect all orders alike. A round takes a sample of every kernel in
 /// every order, kernel by kernel; the next round begins with the next order. The first runs of a sample find
-/// another order's data in the caches and are not counted; their number is `runs_to_settle`, but 0 if a run
-/// takes longer than five times `sample_seconds`, and the run that showed this is then the sample of the
-/// first round. If a kernel takes 0.1 s or more in an order, and three times as long as in the fastest order,
-/// its first run is its only sample there. With `in_stretches` this run is one by
+/// another order's data in the caches and are not counted; their number is `runs_to_settle`. If a run takes
+/// at least five times `sample_seconds`, there are none, and the last run of the plan is the sample of
+/// the first round. If a kernel takes 0.1 s or more in an order, and three times as long as in the fastest
+/// order, the run that planned its samples is its only sample there. With `in_stretches` this run is one by
 /// `KernelBench::run_stretches`, if that takes 0.05 s or more. The first bench is the reference of the
 /// speedups.
 Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options = {});
 
-/// The same for orders that are prepared when needed: `prepare(i)` returns the bench of order i; order 0 is
-/// the reference. If not all benches fit into the allowed memory, orders are timed in groups, each together
-/// with the reference, and the groups share the budget. Two benches are always held at once, even if they
-/// exceed that memory.
+/// Does the same for orders that are prepared when needed: `prepare(i)` returns the bench of order i; order 0
+/// is the reference. If not all benches fit into the allowed memory, orders are timed in groups, each
+/// together with the reference, and the groups share the budget. Two benches are always held at once, even if
+/// they exceed that memory.
 Timings time_orders(Index orders, const PrepareOrder& prepare, const TimingOptions& options = {});
 
 /// A function that times orders as `time_orders` does.

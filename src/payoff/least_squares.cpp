@@ -87,7 +87,7 @@ std::vector<double> non_negative_least_squares(const Rows& a, std::span<const do
   for (const double value : right) largest = std::max(largest, std::abs(value));
 
   std::vector<double> x(n, 0.0);
-  std::vector<bool> refused(n, false);  // unknowns that depend on the chosen ones; reset by each choice
+  std::vector<bool> refused(n, false);  // unknowns that cannot join the chosen ones; reset by each choice
   std::vector<std::size_t> chosen;
   for (std::size_t step = 0; step < 10 * n; ++step) {
     // choose the unknown whose growth reduces the error fastest

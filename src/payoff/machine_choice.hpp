@@ -34,8 +34,8 @@ struct MachineChoice {
   std::array<double, kKernels.size()> floor{};
   std::string fault;  ///< see StoredCalibration
 
-  /// Returns the name of the target of predictions: "this machine, calibrated 2026-11-22" (or "this machine
-  /// on 2 threads", "while it was busy"), "zen3" or "this machine's caches at the costs of zen3".
+  /// Returns what predictions are for: "this machine, calibrated 2026-11-22" (or "this machine on 2 threads,
+  /// …", "… while it was busy"), "zen3" or "this machine's caches at the costs of zen3".
   [[nodiscard]] std::string in_words() const;
 };
 

@@ -56,7 +56,7 @@ FoundCaches find_caches(std::span<const ProbePoint> points, std::size_t most = 3
 /// Measures the rate, in GB/s (10⁹ bytes), at which the threads together read memory. Returns the best of
 /// several passes over a buffer, as STREAM does (McCalpin 1995, Memory bandwidth and machine balance in
 /// current high performance computers). The buffer should be several times the last-level cache.
-/// KernelBench::streamed_bytes divided by this is a lower bound on a kernel's time.
+/// KernelBench::streamed_bytes divided by this rate is a lower bound on a kernel's time.
 double read_bandwidth(std::size_t buffer_bytes = std::size_t{512} << 20, int passes = 8, int threads = 1);
 
 }  // namespace meshorder

@@ -23,11 +23,11 @@ struct MeshComparisonOptions {
   OrderOptions ordering = {};
   KernelSet kernels = KernelSet::plain;
   int threads = 1;  ///< the kernels run on one thread and, if there are more, on all of them
-  /// Seconds for the orders and the runs of kernels together; at least two rounds of runs exceed them.
+  /// Seconds for the orders and the runs of kernels together; two rounds run even if they take longer.
   double budget_seconds = TimingOptions{}.budget_seconds;
   bool reuse = false;           ///< compute `reuse` if the mesh has at most two million simplices
   bool reuse_of_large = false;  ///< compute `reuse` also for larger meshes
-  bool iterations = false;      ///< compute `iterations` in each case in which `reuse` is computed
+  bool iterations = false;      ///< compute `iterations` wherever `reuse` is computed
   /// Called at the beginning of each stage; the stage takes the share `from` … `to` of the whole call.
   std::function<void(const std::string& stage, double from, double to)> begins = {};
 };

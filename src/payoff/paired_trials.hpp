@@ -12,8 +12,8 @@ namespace meshorder {
 /// Orders whose times differ by less than this share are ties.
 inline constexpr double kTie = 0.015;
 
-/// The speed of a program in an order, relative to the file's own order, with an interval that contains the
-/// true ratio in 95 of 100 trials, even though it is checked repeatedly during a trial.
+/// The speed of a program in an order, relative to the file's own order. The interval contains the true ratio
+/// in 95 of 100 trials, even though a trial checks the interval repeatedly.
 struct TimeRatio {
   double ratio = 1;
   double low = 0;

@@ -17,7 +17,7 @@ namespace meshorder {
 inline namespace v0_3 {
 namespace {
 
-/// Throws InvalidArgument unless the mesh has cells that the kernels take.
+/// Throws InvalidArgument unless the mesh has cells that the kernels can use.
 void check_kernels_run(const Mesh& mesh) {
   if (CellSimplices(mesh).size() > 0) return;
   throw InvalidArgument(stored_matrix(mesh) != nullptr

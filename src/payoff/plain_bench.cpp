@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// Of a kernel that runs in stretches, one of `kEvery` elements runs.
+/// A kernel that runs in stretches computes one of `kEvery` elements.
 constexpr std::size_t kEvery = 8;
 
 /// Calls `run(elements)` for all elements; if `in_stretches`, for 16 stretches that start at equal distances.

@@ -8,9 +8,9 @@
 
 namespace meshorder {
 
-/// The plain kernels: a matrix of one number for each edge and vertex, with 32-bit columns; elements and
-/// edges one after another, edges by their smaller end. Results have 1 double a vertex for spmv, 3 for
-/// forces, 1 an entry for assembly.
+/// The plain kernels: a matrix of one number per entry, with 32-bit columns; elements one after another;
+/// edges sorted by their smaller end. Results have 1 double per vertex for spmv, 3 per vertex for forces, 1
+/// per entry for assembly.
 class PlainBench final : public KernelBench {
  public:
   explicit PlainBench(const KernelInput& input);
@@ -37,7 +37,7 @@ class PlainBench final : public KernelBench {
   void prepare_edges(const KernelInput& input);
   void prepare_vertices(const KernelInput& input);
 
-  /// Runs a kernel on the part of one thread, on the elements of every `kEvery`-th stretch if `in_stretches`.
+  /// Runs one thread's part of a kernel; if `in_stretches`, on one of `kEvery` elements (see for_stretches).
   template <class Owned>
   void run_part(Kernel kernel, const Owned& owned, const Share& share, bool in_stretches);
   void run_parts(Kernel kernel, bool in_stretches);

@@ -32,10 +32,10 @@ struct Race {
   [[nodiscard]] MeshMethods methods() const;
 };
 
-/// Times the kernels for half a second each in the mesh's own order, in the order of `auto`, and in two of
-/// five other orders, those with the best predictions. Finds the fastest order. Without a timer, predicted
-/// times decide. `graph` is the vertex graph of `mesh`. Throws InvalidArgument for workloads without kernels,
-/// such as `bandwidth` and `fill`.
+/// Times the kernels for half a second in each of these orders: the mesh's own, that of `auto`, and the two
+/// of five others with the best predictions. Finds the fastest order. Without a timer, predicted times
+/// decide. `graph` is the vertex graph of `mesh`. Throws InvalidArgument for workloads without kernels, such
+/// as `bandwidth` and `fill`.
 Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options = {});
 
 /// Sets the reasons of an order that was computed by the methods of a race.

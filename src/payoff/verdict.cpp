@@ -56,14 +56,14 @@ std::string losses(const Advice& advice, std::size_t candidate) {
 }
 
 /// Returns whether the size of a kernel's gain is in doubt: the times are unreliable, and the gain is less
-/// than four times the difference of repeated timings.
+/// than four times the difference of repeated timings, taken as at least 5 %.
 bool is_vague(const Advice& advice, std::size_t kernel, double factor) {
   constexpr double kBeyondNoise = 4;
   constexpr double kLeastNoise = 0.05;
   return !advice.doubt.empty() && factor - 1 < kBeyondNoise * std::max(kLeastNoise, advice.floor[kernel]);
 }
 
-/// The same for the mean gain of a workload's kernels.
+/// Returns whether the mean gain of a workload's kernels is in doubt by the noise of one of them.
 bool is_vague(const Advice& advice, Workload workload, double factor) {
   for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
     const bool counts = workload == Workload::all || k == kernel_of(workload);

@@ -32,8 +32,8 @@ struct DeckCard {
 
 struct Deck : DeckContents {
   std::vector<DeckCard> sections;
-  /// Ends of some data lines, from a comma on, by the position of their node or element in the file: the text
-  /// after the coordinates, or after the last node that the element's type needs.
+  /// Text at the ends of data lines, from a comma on, after the coordinates or after the last node that the
+  /// element's type needs; by the position of the node or element in the file.
   std::map<Index, std::string> more_of_nodes;
   std::map<Index, std::string> more_of_elements;
 };

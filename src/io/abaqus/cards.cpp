@@ -195,7 +195,7 @@ const std::vector<LineFields> kLayouts{
     {"n+", {"NSET", "SUBMODEL"}},
 };
 
-/// Keywords whose lines name no node and no element by number.
+/// Keywords whose lines name neither nodes nor elements by number.
 constexpr std::array<std::string_view, 115> kPlain{
     // clang-format off
     "AMPLITUDE", "ASSEMBLY", "BEAMGENERALSECTION", "BEAMSECTION", "BUCKLE", "CHANGEFRICTION",
@@ -341,7 +341,7 @@ class ReferenceFinder {
     }
   }
 
-  /// Returns whether a load's label is one for CalculiX's fluid networks: F1FC of *FILM, P1NP of *DLOAD.
+  /// Returns whether a load's label is for CalculiX's fluid networks: F1FC of *FILM, P1NP of *DLOAD.
   [[nodiscard]] bool names_fluid(std::string_view label) const {
     const std::string text = upper_case(label);
     return (card_.keyword == "FILM" && text.ends_with("FC")) ||

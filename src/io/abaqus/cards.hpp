@@ -81,8 +81,8 @@ std::vector<NamedSet> named_sets(const Card& card, std::string_view lines);
 /// Returns "; did you mean *CLOAD?" for a keyword that is spelt almost like a known one; else "".
 std::string suggested_keyword(const Card& card);
 
-/// Returns whether a card, given with its lines, pairs the nodes of several sets in the order of their
-/// numbers: first with first, and so on. New numbers would pair other nodes.
+/// Returns whether a card with these lines pairs the nodes of several sets in the order of their numbers:
+/// first with first, and so on. New numbers would pair other nodes.
 bool pairs_sets(const Card& card, std::string_view lines);
 
 /// Returns whether the effect of a card depends on the order of node and element numbers, even if the card
@@ -90,8 +90,7 @@ bool pairs_sets(const Card& card, std::string_view lines);
 /// with different meshes, CalculiX 2.20 interpolates in triangles that depend on the numbers.
 bool depends_on_numbers(const Card& card);
 
-/// Returns all positive whole numbers in the lines of a card that are the value of a parameter, or the whole
-/// content of a field below the keyword.
+/// Returns the positive integers that are parameter values of a card or entire fields below its keyword.
 std::vector<std::int64_t> numbers_in(std::string_view lines);
 
 }  // namespace meshorder::abaqus

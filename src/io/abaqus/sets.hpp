@@ -57,7 +57,7 @@ class SetReader {
   struct Addition {
     std::size_t set = 0;
     Association association = Association::vertices;
-    bool in_assembly = false;  ///< false also if the addition's names and numbers belong to the part
+    bool in_assembly = false;  ///< whether names and numbers are the assembly's, not the part's
     Location place = {};
     bool generate = false;
     Index first = 0;  ///< position of the block that `add_block` adds

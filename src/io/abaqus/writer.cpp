@@ -28,7 +28,7 @@ namespace {
 
 constexpr std::size_t kPerLine = 16;  // numbers on a line
 
-/// Returns the deck that a mesh was read from; null if there is none or if the mesh no longer fits it.
+/// Returns the deck that a mesh was read from; null if there is none or the mesh no longer fits the deck.
 const AbaqusMetadata* deck_of(const Mesh& mesh) {
   std::size_t at = 0;  // index of the card of element k
   return own_deck<Deck>(mesh, [&](const Deck& deck, Index k, Shape shape, int vertices) {
@@ -211,8 +211,8 @@ class DeckWriter {
            (places.front() == section.first && index_size(places) == places.back() + 1 - section.first);
   }
 
-  /// Returns whether a card contains the first word of the name of a set that is still to be written. O(bytes
-  /// of the card), for any number of sets.
+  /// Returns whether a card contains the first word of an unwritten set's name. O(bytes of the card), for any
+  /// number of sets.
   [[nodiscard]] bool may_use_set_of_cards(std::string_view text) const {
     while (!sets_of_cards_.empty() && !text.empty()) {
       if (words_of_sets_.contains(next_word_in_capitals(text))) return true;

@@ -17,7 +17,7 @@
 // Data Format software library, "ADF file layout" (NASA, https://cgns.github.io/CGNS_docs_current/adf/).
 // Numbers are hexadecimal digits. A pointer has 8 digits for a block of 4,096 bytes and 4 for a byte in the
 // block. In files of version B…, which libcgns writes if it is configured for 64 bits, pointers and
-// dimensions are binary numbers, with a byte for each digit (ADF_internals.c of libcgns).
+// dimensions are binary numbers with as many bytes as digits (ADF_internals.c of libcgns).
 
 namespace meshorder::cgns {
 namespace {
@@ -28,7 +28,7 @@ constexpr std::size_t kTag = 4;
 constexpr std::size_t kPointer = 12;
 constexpr std::size_t kName = 32;
 constexpr std::size_t kMostLengths = 12;
-constexpr std::size_t kDigits = 8;  // digits of a count, of a dimension, and of the block in a pointer
+constexpr std::size_t kDigits = 8;  // digits of a count, a dimension, or a pointer's block
 constexpr std::uint64_t kVersionAt = 25;
 constexpr std::uint64_t kByteOrderAt = 100;
 constexpr std::uint64_t kRootPointerAt = 134;

@@ -9,13 +9,13 @@
 #include <set>
 #include <utility>
 
-// Makes arrays from the values of nodes. Values with the same name that belong to different vertices or cells
+// Makes arrays from the values of nodes. Values of the same name and type for different vertices or cells
 // become one array.
 
 namespace meshorder::cgns {
 namespace {
 
-/// Pieces that become one array.
+/// Pieces of one name.
 using Group = std::vector<Piece*>;
 
 class ArrayMaker {
@@ -54,7 +54,7 @@ class ArrayMaker {
     return true;
   }
 
-  /// Makes one array of a group. If pieces overlap, splits it by solution (level 0), then by node (level 1).
+  /// Makes one array of a group. If pieces do not fit, splits it by solution (level 0), then node (level 1).
   void make_of(const Group& group, int level) {
     const Piece& first = *group.front();
     if (group.size() == 1 || fit_together(group)) {

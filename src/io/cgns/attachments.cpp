@@ -27,7 +27,7 @@ bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
 constexpr std::array<std::string_view, 5> kContainers{"FlowSolution_t", "DiscreteData_t", "GridCoordinates_t",
                                                       "ArbitraryGridMotion_t", "ZoneSubRegion_t"};
 constexpr std::array<std::string_view, 2> kVertexLocations{"Vertex", "Null"};
-/// Labels of the nodes of a zone whose contents other formats can hold.
+/// Labels of those nodes of a zone that other formats can hold.
 constexpr std::array<std::string_view, 8> kHeldByOthers{"ZoneType_t",     "GridCoordinates_t", "Elements_t",
                                                         "FlowSolution_t", "DiscreteData_t",    "ZoneBC_t",
                                                         "Ordinal_t",      "ZoneSubRegion_t"};
@@ -67,7 +67,7 @@ class AttachmentReader {
 
   // ---- positions of numbers
 
-  /// Returns the cell of an element number in a zone, −1 if the number has no cell.
+  /// Returns the cell with an element number in a zone, −1 if there is none.
   [[nodiscard]] Index cell_of(const ZonePlaces& of_zone, std::int64_t number) const {
     const auto begin = metadata_.sections.begin() + of_zone.first_section;
     const auto after =
@@ -157,8 +157,8 @@ class AttachmentReader {
     }
   }
 
-  /// Reads the child of a node that lists vertices or elements. Returns the index of the list, −1 if the node
-  /// has none.
+  /// Reads the node's child that lists vertices or elements. Returns the index of the list, −1 if there is
+  /// none.
   int read_own_list(Node& node, Association association, const std::string& path) {
     int place = -1;
     for (Node& child : node.children) {
@@ -182,7 +182,7 @@ class AttachmentReader {
     });
   }
 
-  /// Marks all lists of the zone as ordering data: a ZoneSubRegion_t may have data for any of them.
+  /// Sets `orders_data` of all lists of the zone: a ZoneSubRegion_t may have data for any of them.
   void mark_lists_of_zone() {
     for (PointList& list : metadata_.lists) list.orders_data = list.orders_data || list.zone == zone_;
   }
@@ -221,7 +221,7 @@ class AttachmentReader {
     }
   }
 
-  /// Reads values for `count` vertices or cells: `rows` gives these by its association, section and list.
+  /// Reads the values of `count` vertices or cells, which `rows` gives by association, section and list.
   void read_values(Node& node, const std::string& solution, const Field& rows, std::size_t count,
                    const std::string& path) {
     Values values = numbers_of(node);
@@ -246,7 +246,7 @@ class AttachmentReader {
     reading_.pieces.push_back({solution, name, std::move(values), reading_.bind(node, std::move(field))});
   }
 
-  /// Reads user data, whose meaning is not known. They are reordered only if they give a GridLocation_t.
+  /// Reads user data of unknown meaning. Their values are reordered only if they give a GridLocation_t.
   void read_user_data(Node& node, const std::string& path) {
     if (node.child_of_label("GridLocation_t") != nullptr) return read_container(node, path);
     const int list = read_own_list(node, Association::vertices, path);
@@ -293,8 +293,8 @@ class AttachmentReader {
     }
   }
 
-  /// Reads the holes of a zone. CGNS allows one list or several ranges, and in a new order some of the ranges
-  /// may become lists. So several ranges are joined to one range, or to a list.
+  /// Reads the holes of a zone. CGNS allows one list or several ranges, and a range may become a list in a
+  /// new order. So several ranges are joined to one range, or to a list.
   void read_holes(Node& node, const std::string& path) {
     const Association association = location_of(node, Association::vertices);
     const auto is_list = [](const Node& child) {
@@ -359,8 +359,8 @@ class AttachmentReader {
     }
   }
 
-  /// Returns the number to add to the parents of polygons to get element numbers: 0 if the parents are
-  /// element numbers; if they count the polyhedra from 1, the number before that of the first polyhedron.
+  /// Returns what to add to the parents of polygons to get element numbers: 0 if the parents are such
+  /// numbers; the number of the first polyhedron − 1 if the parents count the polyhedra from 1.
   [[nodiscard]] std::int64_t shift_of_parents(std::span<const std::int64_t> numbers,
                                               const std::string& path) {
     const auto wrong = std::find_if(numbers.begin(), numbers.end(), [&](std::int64_t number) {
@@ -462,8 +462,8 @@ class AttachmentReader {
     reading_.mesh.sets.push_back({name, list.association, unique_members(list.members)});
   }
 
-  /// Makes a set of each boundary section whose cells are not all in sets: some programs name boundaries by
-  /// sections.
+  /// Makes a set of each boundary section with cells outside all sets (some programs name boundaries by
+  /// sections), then the array of labels.
   void add_section_sets() {
     std::vector<bool> is_named(reading_.mesh.cells.shapes.size());
     for (const EntitySet& set : reading_.mesh.sets) {
@@ -528,7 +528,7 @@ class AttachmentReader {
   std::set<std::string> set_names_;
   NameNumbers numbers_;
   std::vector<std::int64_t> labels_;
-  std::set<int> label_sections_;  // sections named only by their labels
+  std::set<int> label_sections_;  // sections named by `name_of_label`
 };
 
 }  // namespace

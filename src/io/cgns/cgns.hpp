@@ -8,9 +8,9 @@
 //
 // Element sections become blocks of cells, zone by zone, in the order of their element numbers. A boundary
 // condition or a ZoneSubRegion_t becomes a set of the same name, "ZONE.NAME" if several have that name. An
-// array of a solution keeps its name; it is "SOLUTION.NAME" if two solutions have values for the same
-// vertices or cells, and "NAME step K" if the file assigns its solution to one of several times. Arrays at
-// cell centres belong to the cells of the base's dimension. All other nodes are kept as they are.
+// array of a solution keeps its name, or becomes "SOLUTION.NAME" if two solutions have values for the same
+// vertices or cells, "NAME step K" if the file assigns the solution to one of several times. Arrays at cell
+// centres belong to the cells of the base's dimension. All other nodes are kept as they are.
 //
 // Polyhedra become tetrahedra, pyramids, wedges or hexahedra if their faces form such a cell, else cells of
 // the shape polyhedron. A polygon becomes a cell if it is a face of fewer than two polyhedra, or if a
@@ -37,7 +37,6 @@ inline constexpr int kMixedElements = 20;
 inline constexpr int kPolygons = 22;
 inline constexpr int kPolyhedra = 23;
 
-/// A type of elements.
 struct ElementType {
   int number;  ///< value of ElementType_t
   std::string_view name;
@@ -45,20 +44,19 @@ struct ElementType {
   int nodes;
 };
 
-/// Returns the type of that number; null for unknown types, mixed elements, polygons and polyhedra.
+/// Returns the element type `number`; null for unknown types, mixed elements, polygons and polyhedra.
 const ElementType* element_type(std::int64_t number);
 /// Returns the type of cells of this shape, null if there is none.
 const ElementType* element_type_of(Shape shape, int nodes);
-/// Returns, for each vertex of a cell, its position in the file's element; empty if both orders agree. The
+/// Returns, for each vertex of a cell, the position in the file's element; empty if both orders agree. The
 /// permutation is its own inverse.
 std::span<const int> file_order(Shape shape, int nodes);
 
 // ---- contents of a file besides the mesh
 
-/// A zone.
 struct Zone {
   std::string name;
-  std::string number_type = "I4";  ///< type of the numbers in the node that holds the zone's size
+  std::string number_type = "I4";  ///< type of the sizes in the Zone_t node
   std::int64_t cell_count = 0;     ///< number of cells as given in the file, not checked
 };
 
@@ -67,7 +65,7 @@ struct Section {
   int zone = 0;
   std::string name = {};
   int type = 0;            ///< number of the element type, `kMixedElements`, `kPolygons` or `kPolyhedra`
-  std::int64_t first = 1;  ///< number of its first element in the file
+  std::int64_t first = 1;  ///< element number of its first element
   Index count = 0;         ///< number of its elements in the file
   std::string range_type = "I4";
   std::string number_type = "I4";
@@ -77,12 +75,12 @@ struct Section {
   [[nodiscard]] bool is_of_polyhedra() const { return type == kPolygons || type == kPolyhedra; }
 };
 
-/// The polygons and polyhedra of all zones, section by section. Stays the same when the mesh is reordered.
+/// The polygons and polyhedra of all zones, section by section. Reordering the mesh does not change them.
 struct Polyhedra {
   std::vector<Offset> corner_starts{0};  ///< start of each polygon in `corners`, then the size of `corners`
   std::vector<Index> corners;            ///< vertices of the polygons, by their positions in the file
   std::vector<Offset> face_starts{0};    ///< start of each polyhedron in `faces`, then the size of `faces`
-  /// Faces of polyhedra: ±(1 + index of the polygon), negative if its normal points into the polyhedron.
+  /// Faces of polyhedra: ±(1 + index of the polygon), negative if the polygon's normal points inward.
   std::vector<Index> faces;
 
   [[nodiscard]] Index polygon_count() const { return static_cast<Index>(corner_starts.size() - 1); }
@@ -119,8 +117,8 @@ struct PointList {
 /// The parents of a section's elements: the cells on both sides of each element.
 struct Parents {
   int section = 0;
-  std::size_t columns = 2;              ///< values of an element: 2, or 4 with the numbers of faces
-  std::vector<Index> rows = {};         ///< the cell of each row; in a section of polygons, the polygon
+  std::size_t columns = 2;              ///< values per element: 4 in ParentData, else 2
+  std::vector<Index> rows = {};         ///< the cell of each row, or the polygon if `of_polygons`
   std::vector<Index> cells = {};        ///< the first column of parents, then the second; −1: no parent
   std::vector<std::int64_t> rest = {};  ///< the values of the other columns, column by column
   bool of_polygons = false;
@@ -128,7 +126,7 @@ struct Parents {
   std::string number_type = "I4";
 };
 
-/// What the values of a node mean, and where the mesh holds them.
+/// The meaning of a node's values and their place in the mesh.
 struct Field {
   enum class Role : std::uint8_t {
     zone_size,
@@ -145,11 +143,11 @@ struct Field {
   int axis = 0;            ///< axis of a coordinate, from 0
   std::string type = {};   ///< type of values and coordinates in the file
   std::string array = {};  ///< name of the mesh's array
-  bool has_left = false;   ///< for values: the array is gone, or no longer fits its fields
+  bool has_left = false;   ///< for values: the array no longer fits its fields
   Index component = 0;     ///< component of the array
   Association association = Association::vertices;
-  int section = -1;  ///< section whose cells have the values, in their order; −1: `list` decides
-  int list = -1;     ///< list whose members have the values, in their order; −1: the whole zone
+  int section = -1;  ///< section whose cells have the values, in order; −1: see `list`
+  int list = -1;     ///< list whose members have the values, in order; −1: the whole zone
 };
 
 /// The nodes of a file, without the values that the mesh holds, and the fields that describe these values.
@@ -167,7 +165,7 @@ struct CgnsMetadata final : FormatMetadata {
   std::shared_ptr<const Polyhedra> polyhedra;  ///< null if there are none
   std::vector<Index> cell_of_polygon;          ///< −1: the polygon is not a cell
   std::vector<Index> cell_of_polyhedron;       ///< −1: the polyhedron was left out
-  std::vector<Index> vertex_places;            ///< mesh index of each vertex of the file; empty: the same
+  std::vector<Index> vertex_places;            ///< mesh index of each vertex of the file; empty: same order
   std::vector<std::string> lost;               ///< see `contents`
 
   /// Returns the index in the mesh of the vertex at `place` in the file.

@@ -175,7 +175,7 @@ class Filler {
     is_wide ? put_as(std::int64_t{}) : put_as(std::int32_t{});
   }
 
-  /// Returns how many numbers of ElementConnectivity an element has.
+  /// Returns how many numbers an element has in ElementConnectivity.
   [[nodiscard]] std::size_t size_of(const Section& section, Index element) const {
     return members_of(section, element).size() + (has_heads(section) ? 1 : 0);
   }

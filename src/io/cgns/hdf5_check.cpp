@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-// Checks an HDF5 file before libcgns reads it: libcgns trusts the file's lengths of names and sizes of data.
+// Checks an HDF5 file before libcgns reads it: libcgns trusts the file's sizes of names and data.
 
 namespace meshorder::cgns {
 namespace {
@@ -22,7 +22,7 @@ using hdf5::Handle;
 constexpr int kMostLevels = 64;
 constexpr std::size_t kMostLetters = 32;
 constexpr std::string_view kDataSet = " data";
-/// Bytes of a number, by the alternatives of Values.
+/// Bytes per value of each alternative of Values.
 constexpr std::array<std::size_t, 10> kSizes{8, 4, 1, 1, 2, 2, 4, 4, 8, 8};
 
 class Hdf5Check {
@@ -42,7 +42,7 @@ class Hdf5Check {
     throw InputError(name_, what, remedy);
   }
 
-  /// Returns the text of an attribute; fails if it exceeds the `most` bytes that libcgns has room for.
+  /// Returns an attribute's text; fails if it is missing or exceeds the `most` bytes that libcgns holds.
   [[nodiscard]] std::string text_of(hid_t group, const std::string& path, const char* name,
                                     std::size_t most) const {
     const std::string what = fmt::format("{}: the attribute '{}'", path.empty() ? "/" : path, name);

@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::size_t kLongestName = 32;
 
-/// Makes a node whose values a field describes.
+/// Makes a node and the field of its values.
 Node field_node(CgnsMetadata& metadata, std::string name, std::string label, Field field) {
   metadata.fields.push_back(std::move(field));
   return {.name = std::move(name), .label = std::move(label), .field = index_size(metadata.fields) - 1};
@@ -97,7 +97,7 @@ class MetadataMaker {
 
  private:
   static Node version() {
-    constexpr float kVersion = 3.3F;  // later versions have the same form of the nodes written here
+    constexpr float kVersion = 3.3F;  // later versions store these nodes alike
     Node node{.name = "CGNSLibraryVersion", .label = "CGNSLibraryVersion_t", .type = "R4", .dimensions = {1}};
     node.bytes.resize(sizeof(kVersion));
     std::memcpy(node.bytes.data(), &kVersion, sizeof(kVersion));
@@ -179,7 +179,7 @@ class MetadataMaker {
 
 /// Returns the type in which new values are written.
 std::string type_of_values(const Values& values) {
-  // types by the alternatives of Values
+  // type for each alternative of Values
   constexpr std::array kTypes{"R8", "R4", "I4", "I4", "I4", "I4", "I4", "I8", "I8", "I8"};
   return kTypes.at(values.index());
 }
@@ -383,9 +383,9 @@ class Addition {
     }
   }
 
-  /// Returns the name of the family for a boundary part of that name, and adds the family unless it exists.
-  /// Programs identify the parts of a boundary by families. The name gets a suffix if a zone has the same
-  /// name.
+  /// Returns the family name for a boundary part called `name`, and adds the family unless it exists.
+  /// Programs identify the parts of a boundary by families. The family's name gets a suffix if a zone has the
+  /// same name.
   std::string family_for(const std::string& name) {
     const bool is_of_zone =
         std::any_of(zones_.begin(), zones_.end(), [&](const Node* zone) { return zone->name == name; });

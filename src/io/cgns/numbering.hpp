@@ -16,7 +16,7 @@ namespace meshorder::cgns {
 /// cell. Each position in a section keeps its kind of polygon: a cell, or a polygon between two cells.
 /// Polygons are left out if they are not cells and have no cell on either side.
 ///
-/// The sections keep their numbers if all of them keep their sizes, else each zone is numbered from 1 on.
+/// The sections keep their element numbers if all keep their sizes, else each zone is numbered from 1 on.
 class Numbering {
  public:
   /// `metadata` must fit the mesh; its lists and fields may change later. Both arguments must outlive this
@@ -24,7 +24,7 @@ class Numbering {
   Numbering(const Mesh& mesh, const CgnsMetadata& metadata);
 
   [[nodiscard]] Index vertex_count(int zone) const;
-  /// Returns the vertex at a position in its zone.
+  /// Returns the vertex at `place` in a zone.
   [[nodiscard]] Index vertex_at(int zone, Index place) const;
   [[nodiscard]] Index number_of_vertex(Index v) const;
 
@@ -66,8 +66,8 @@ class Numbering {
   bool is_whole_ = true;
 };
 
-/// Adds nodes to `metadata` for the arrays and sets that have no fields or lists there. Notes the arrays and
-/// sets that CGNS cannot hold.
+/// Adds nodes to `metadata` for arrays without fields and sets without lists there. Notes the arrays and sets
+/// that CGNS cannot hold.
 void add_missing(const Mesh& mesh, CgnsMetadata& metadata, const Numbering& numbering, Notes& notes);
 
 /// Fills in the values of a node that has a field, in the present order of the mesh.

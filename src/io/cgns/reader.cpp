@@ -332,8 +332,8 @@ class MeshReader {
   std::vector<Index> cell_;
 };
 
-/// Makes a block of each listed range of boundary elements: its elements then stay together in a new order,
-/// so that the range can be written as a range.
+/// Makes each listed range of boundary elements a block: its elements then stay together in a new order and
+/// can be written as a range.
 void keep_ranges(Reading& reading) {
   Mesh& mesh = reading.mesh;
   std::vector<Index> starts = mesh.cell_blocks;

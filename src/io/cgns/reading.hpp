@@ -22,13 +22,13 @@ struct ZonePlaces {
   std::string path;
   Index first_vertex = 0;
   Index vertices = 0;
-  int first_section = 0;  ///< index in the metadata; the sections of a zone ascend by their numbers
+  int first_section = 0;  ///< index in the metadata; a zone's sections ascend by element number
   int section_count = 0;
   std::vector<Index> centred_cells = {};  ///< cells of the base's dimension ("CellCenter")
-  std::map<std::string, int> steps = {};  ///< time step of solutions and grids, from 1, if there are several
+  std::map<std::string, int> steps = {};  ///< time step of solutions and grids, from 1; empty if just one
 };
 
-/// The values of one node, which become an array or a part of one.
+/// The values of one node, which become all or part of an array.
 struct Piece {
   std::string solution;
   std::string name;
@@ -50,8 +50,7 @@ struct Reading {
                          const std::string& remedy = "the file may be damaged") const;
   /// Replaces the bytes of a node by a field, and returns the index of the field.
   int bind(Node& node, Field field);
-  /// Returns the vertex with a number in a zone. If there is none, throws InputError with the text of
-  /// `place`.
+  /// Returns vertex `number` of a zone. Throws InputError, with the text of `place`, if there is none.
   template <class Number, class Place>
   [[nodiscard]] Index vertex_of(Number number, const ZonePlaces& zone, const Place& place) const {
     if (number < 1 || std::cmp_greater(number, zone.vertices)) {
@@ -101,7 +100,7 @@ void with_whole_numbers(const Reading& reading, const Node& node, const std::str
   with_integers(values, work);
 }
 
-/// Returns whether values and lists of a node belong to vertices or cells; faces and edges count as cells.
+/// Returns what a node's data belong to: vertices or cells (also faces, edges); `inherited` by default.
 Association location_of(const Node& node, Association inherited);
 
 /// Ranges of element numbers: first and last.

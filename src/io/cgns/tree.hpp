@@ -25,11 +25,11 @@ struct Node {
   std::vector<std::int64_t> dimensions = {};  ///< the first dimension varies fastest
   std::string bytes = {};                     ///< values in the machine's byte order
   std::vector<Node> children = {};
-  int field = -1;  ///< index in `CgnsMetadata::fields` of the field with the values; −1: they are in `bytes`
+  int field = -1;  ///< index in `CgnsMetadata::fields` of the values' field; −1: `bytes` has the values
 
   /// Returns the number of values.
   [[nodiscard]] std::uint64_t size() const;
-  /// Returns the characters of a C1 node without the spaces at their end.
+  /// Returns the characters of a C1 node without the padding at the end.
   [[nodiscard]] std::string text() const;
   /// Returns the first child of that label, null if there is none.
   [[nodiscard]] const Node* child_of_label(std::string_view wanted) const;
@@ -44,10 +44,10 @@ Node text_node(std::string name, std::string label, std::string_view text);
 /// Makes a node that holds 32-bit integers in one dimension.
 Node integer_node(std::string name, std::string label, const std::vector<std::int32_t>& values);
 
-/// Returns the bytes of one value of a type, 0 for an unknown type.
+/// Returns the bytes per value of a type, 0 for an unknown type.
 std::size_t size_of_type(std::string_view type);
 
-/// Calls `work` with a zero of the C++ type for a type of numbers and returns its result.
+/// Returns `work(zero)` for a zero of the C++ type of a type of numbers (double if unknown).
 template <class Work>
 auto with_number_of_type(std::string_view type, const Work& work) {
   if (type == "R4") return work(float{});
@@ -76,11 +76,11 @@ Tree read_tree(const FilePath& path);
 /// that has a `field`. It sets the type, dimensions and bytes of the copy, and may change its name and label.
 void write_tree(const Tree& tree, const FilePath& path, const std::function<void(Node&)>& fill);
 
-/// Throws InputError unless libcgns can read a file of HDF5 safely: each node is a group whose attributes
-/// have the expected lengths, and its data are in the file. `path` is on disk, `name` is for messages.
+/// Throws InputError unless libcgns can read an HDF5 file safely: each node is a group whose attributes have
+/// the expected lengths, and its data are in the file. `path` is on disk, `name` is for messages.
 void check_hdf5(const std::filesystem::path& path, const std::string& name);
 
-/// Throws InputError unless libcgns can read a file of ADF safely: all pointers lead to nodes, lists of
+/// Throws InputError unless libcgns can read an ADF file safely: all pointers lead to nodes, lists of
 /// children and values within the file, and each node has one parent. O(nodes · log nodes).
 void check_adf(const InputFile& file, const std::string& name);
 

@@ -29,7 +29,7 @@ void move_positions(std::vector<Index>& positions, std::span<const Index> places
   }
 }
 
-/// Moves the values, one for each vertex or cell, to their new positions; drops values with position −1.
+/// Returns values, one for each vertex or cell, at their new positions; drops those with position −1.
 std::vector<Index> moved_values(const std::vector<Index>& values, std::span<const Index> places) {
   std::vector<Index> result(values.size());
   Index kept = 0;
@@ -43,8 +43,7 @@ std::vector<Index> moved_values(const std::vector<Index>& values, std::span<cons
 }
 
 /// Returns whether the vertices of a cell are the corners of a polyhedron's faces, each once.
-/// `polyhedron_with`: for each vertex, the last polyhedron that has it as a corner. Call it only once for
-/// each polyhedron.
+/// `polyhedron_with`: the last polyhedron with each vertex as a corner. Call this once for each polyhedron.
 bool has_corners_of(Index polyhedron, std::span<const Index> cell, const CgnsMetadata& metadata,
                     std::vector<Index>& polyhedron_with) {
   std::size_t corners = 0;
@@ -58,8 +57,8 @@ bool has_corners_of(Index polyhedron, std::span<const Index> cell, const CgnsMet
                      [&](Index vertex) { return std::exchange(polyhedron_with[vertex], -1) == polyhedron; });
 }
 
-/// Returns whether the polygons and polyhedra of the metadata are cells of the mesh with the same vertices.
-/// O(size of the mesh).
+/// Returns whether the mesh's cells of polygons and polyhedra still have the vertices of the metadata. O(size
+/// of the mesh).
 bool polyhedra_fit(const Mesh& mesh, const CgnsMetadata& metadata) {
   if (metadata.polyhedra == nullptr) return true;
   Index cells = 0;
@@ -158,7 +157,7 @@ void release_arrays(const Mesh& mesh, CgnsMetadata& metadata, const Numbering& n
 }
 
 /// Removes nodes that have nothing left to write: sections without cells, conditions and solutions without
-/// members, and arrays that are gone. Also removes data in the order of a list that changed, with a note.
+/// members, and arrays that are gone. Also removes, and notes, data in the order of a list that changed.
 class Pruner {
  public:
   Pruner(const Mesh& mesh, const CgnsMetadata& metadata, const Numbering& numbering, Notes& notes)

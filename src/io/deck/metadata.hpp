@@ -104,7 +104,7 @@ const DeckMetadata<Deck>* own_deck(const Mesh& mesh, Fits fits) {
   return own;
 }
 
-/// A vertex of a cell whose node comes later in the deck.
+/// A cell's vertex, whose node follows the element in the deck.
 ///
 /// @tparam Place  type of the element's place in the deck, for a message
 template <class Place>
@@ -114,7 +114,7 @@ struct LaterNode {
   Place place;          ///< place of the element in the deck
 };
 
-/// Sets the entries that wait for `nodes`. Calls `fail(later)`, which throws, if there is no such node.
+/// Sets the vertices of cells for `nodes`. Calls `fail(later)`, which throws, if there is no such node.
 template <class Place, class Fail>
 void resolve(const std::vector<LaterNode<Place>>& nodes, const IdMap& numbers, Cells& cells, Fail fail) {
   for (const LaterNode<Place>& later : nodes) {

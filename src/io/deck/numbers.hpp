@@ -75,7 +75,7 @@ class FileNumbers {
     }
     return true;
   }
-  /// Returns, for each place in the mesh, the item of the file that is there. O(items).
+  /// Returns, for each position in the mesh, the item of the file. O(items).
   [[nodiscard]] std::vector<Index> items() const {
     std::vector<Index> items(static_cast<std::size_t>(of_file_.size()));
     for (Index k = 0; k < of_file_.size(); ++k) items[place(k)] = k;

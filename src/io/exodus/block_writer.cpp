@@ -16,11 +16,11 @@
 namespace meshorder::exodus {
 namespace {
 
-/// Returns the division of a mesh into blocks. Sets divide a mesh only if it was read from another format.
+/// Returns the division of a mesh into blocks; sets divide only meshes that were read from another format.
 CellDivision divide(const Mesh& mesh) {
   const ExodusMetadata* const own = own_metadata(mesh);
   if (own == nullptr) return divide_cells(mesh, {.sets = true});
-  // if the file already has 64-bit ids, its kind of netCDF can hold them
+  // a file that had 64-bit ids is of a kind of netCDF that can hold them
   const bool has_wide_labels =
       std::any_of(own->blocks.begin(), own->blocks.end(),
                   [](const BlockRecord& block) { return !std::in_range<std::int32_t>(block.label); });
@@ -85,7 +85,7 @@ void plan_blocks(Planning& planning, bool is_own) {
     ids.insert(plan.id);
     if (division.by_sets) plan.cells.label = plan.id;  // a division by sets has no labels to keep
   }
-  // blocks of the file that have no elements stay before the next block that has elements
+  // a block without elements stays before the block with elements that followed it in the file
   std::size_t next = 0;
   for (const BlockRecord& record : planning.metadata.blocks) {
     if (with_elements.contains(&record)) {
@@ -159,7 +159,7 @@ Columns attributes_of(Planning& planning, const BlockPlan& block) {
 
 namespace {
 
-/// Returns the numbers of the nodes of `count` elements of a block, from 1, in the order of the file.
+/// Returns the node numbers, from 1, of `count` elements of a block from `first` on, in the file's order.
 std::vector<std::int32_t> connectivity(const Mesh& mesh, const CellPart& block, Index first, Index count) {
   const auto nodes = static_cast<std::size_t>(block.nodes);
   std::vector<std::int32_t> result(static_cast<std::size_t>(count) * nodes);

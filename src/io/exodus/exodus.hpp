@@ -14,8 +14,8 @@
 // - Distribution factors become arrays "… factors".
 // - Attributes become arrays "attribute NAME".
 // - Named maps become arrays "map NAME".
-// - A variable becomes an array NAME, or arrays "NAME step K" if there are several steps. A variable on a set
-//   becomes, for example, "NAME on node set SET".
+// - A nodal or element variable becomes an array NAME, or arrays "NAME step K" if there are several steps. A
+//   set variable becomes, for example, "NAME on node set SET".
 
 #include "io/exodus/netcdf.hpp"
 #include "io/format.hpp"
@@ -37,26 +37,26 @@ namespace meshorder::exodus {
 inline constexpr std::string_view kAttribute = "attribute ";
 inline constexpr std::string_view kMap = "map ";
 inline constexpr std::string_view kFactors = " factors";
-/// Name of the block property that holds the labels of cells if these cannot be the blocks' ids.
+/// Name of the block property with the labels of cells, if these cannot be the blocks' ids.
 inline constexpr std::string_view kLabelProperty = kLabel;
 
 // ---- elements
 
-/// Returns the shape of elements of a type. The type may be in any case, with or without the number of nodes.
-/// Returns nothing for unknown types, for types without a fixed number of nodes, and for too few nodes.
+/// Returns the shape of elements of a type. The type may be in upper or lower case, with or without the
+/// number of nodes. Returns nullopt for unknown types, for types without a fixed number of nodes, and for too
+/// few nodes.
 std::optional<Shape> shape_of(std::string_view type, int nodes, int dimension);
 
 /// Returns the name of the element type for these cells; empty if other programs do not know such a type.
 std::string_view type_of(Shape shape, int nodes);
 
-/// Returns, for each vertex of a cell, its position in the file's element; empty if both orders agree.
+/// Returns the position of each vertex of a cell in the file's element; empty if both orders agree.
 std::span<const int> file_order(Shape shape, int nodes);
 
 inline constexpr int kMostSides = 6;
 
-/// Returns how many faces of a surface element are counted as sides before its edges, as in the library of
-/// Exodus II: 2 for triangles in three dimensions and for shells of four corners, 0 for quadrilaterals of
-/// other types. 0 for other shapes.
+/// Returns how many faces of a surface element are its first sides, before its edges, as in the library of
+/// Exodus II: 2 for triangles in three dimensions and for shells of four corners, else 0.
 int faces_of(Shape shape, std::string_view type, int dimension);
 
 /// Returns the number of nodes of side `side`, counted from 1; 0 if there is no such side.
@@ -66,14 +66,14 @@ int nodes_of_side(Shape shape, int nodes, int side, int faces);
 
 // ---- contents of a file besides the mesh
 
-/// A variable over all steps.
+/// A nodal, element or set variable over all steps.
 struct Series {
   std::string name;
   NcType type = kDouble;
   std::vector<std::string> arrays = {};  ///< the mesh's array of each step; empty if there are no values
-  // each has an entry for each block if the variable is of elements, else one entry
-  std::vector<bool> present = {};   ///< whether the file's table of variables marks values
-  std::vector<bool> declared = {};  ///< whether the file has a netCDF variable, even if it has no steps
+  // both lists have an entry for each block if this is an element variable, else one entry
+  std::vector<bool> present = {};   ///< whether the file's truth table marks values
+  std::vector<bool> declared = {};  ///< whether the file has its netCDF variable, even without steps
 };
 
 struct BlockRecord {
@@ -97,8 +97,8 @@ struct SetRecord {
   std::string in_mesh;  ///< name of the mesh's set; for side sets, of its array (empty: no sides)
   NcType type = kInt;
   NcType factor_type = kDouble;
-  int factor_width = 0;           ///< side sets: the largest number of factors of a side
-  bool factors_by_nodes = true;   ///< side sets: each side has a factor for each node, not factor_width
+  int factor_width = 0;          ///< side sets: the largest number of factors of a side
+  bool factors_by_nodes = true;  ///< side sets: a side has a factor for each node, not `factor_width` factors
   std::vector<Series> variables;  ///< one for each variable of the family, without names
   std::vector<std::int64_t> properties;
 };
@@ -132,7 +132,7 @@ struct MapRecord {
 struct SetKind {
   std::string_view word;         ///< used in names of arrays and in messages
   std::string_view count;        ///< name of the dimension that counts the sets
-  std::string_view prefix;       ///< beginning of the names of the variables of ids, names and status
+  std::string_view prefix;       ///< begins the names of the netCDF variables of ids, names and status
   std::string_view members;      ///< name of the variable of members
   std::string_view size;         ///< name of the dimension that counts the members
   std::string_view factor_size;  ///< name of the dimension that counts the factors
@@ -162,15 +162,14 @@ struct ExodusMetadata final : FormatMetadata {
   std::vector<Dimension> dimensions;  ///< dimensions whose lengths do not depend on the mesh
   std::vector<PlainVariable> plain;
   std::map<std::string, std::vector<Attribute>>
-      variable_attributes;  ///< by name of the variable; without attributes that the format defines
+      variable_attributes;  ///< by name of the netCDF variable; without attributes that the format defines
   int coordinates = 3;      ///< number of coordinates of a point
   NcType coordinate_type = kDouble;
   bool packs_coordinates = false;  ///< all coordinates are in one variable, "coord"
   bool packs_nodal = false;        ///< all nodal variables are in one variable, "vals_nod_var"
   bool has_node_numbers = false;   ///< the file has node_num_map, even if its numbers are 1, 2, …
   bool has_element_numbers = false;
-  /// Name of the file if it is a piece of a decomposed mesh, whose communication maps have been left out;
-  /// otherwise empty.
+  /// Name of the file if it is a piece of a decomposed mesh, read without its communication maps; else empty.
   std::string piece;
   bool steps_unlimited = true;
   std::size_t steps = 0;
@@ -215,9 +214,9 @@ Header read_header(const FilePath& path);
 
 enum class PartContent : std::uint8_t { points_and_cells, all };
 
-/// Reads ranges of the points and cells of a file, with their values in the arrays, sets and numbers that
-/// `read` returns. Lists of sets are read completely, in chunks, but only members in the ranges are kept.
-/// O(size of the part + entries of sets).
+/// Reads the points and cells in some ranges of a file, with the arrays, sets and numbers that `read`
+/// returns. Lists of sets are read completely, in chunks, but only members in the ranges are kept. O(size of
+/// the part + entries of sets).
 ///
 /// @param notes  receives the notes of `read` about this part, except those on repeated members and repeated
 ///               numbers. The caller, which has all parts, makes these by `note_of_repeated` and

@@ -73,7 +73,7 @@ class HeaderReader {
     return std::string(bytes_.substr(begin, length));
   }
 
-  /// Reads the tag of a list and returns its length. Each item of the list has at least `least` bytes.
+  /// Reads the tag and the length of a list; returns the length. Each item has at least `least` bytes.
   std::uint64_t list(std::uint64_t tag, std::uint64_t least, const char* of) {
     const std::uint64_t found = integer(4);
     const std::uint64_t length = count();
@@ -155,7 +155,7 @@ class HeaderReader {
       parts.push_back(std::move(part));
     }
     for (const VariablePart& part : parts) {
-      // the records of a single variable follow each other without gaps
+      // if only one variable has records, these follow each other without gaps
       const std::uint64_t step = record_variables == 1 ? part.bytes : record;
       if (part.in_records && (records_ == 0 || part.bytes == 0)) continue;
       const std::uint64_t before = part.in_records ? records_ - 1 : 0;

@@ -23,8 +23,8 @@
 namespace meshorder::exodus {
 namespace {
 
-/// Starts libnetcdf with environment variables that keep it from finding settings. Only the pointer `environ`
-/// changes, and only during this call: other threads may read variables meanwhile.
+/// Starts libnetcdf with environment variables that keep the library from finding settings. Only the pointer
+/// `environ` changes, and only during this call: other threads may read variables meanwhile.
 void start_library() {
   static std::array settings{std::string("NCRCENV_IGNORE=1"), std::string("NC_TEST_AWS_DIR=/dev/null"),
                              std::string("HOME=/dev/null"), std::string("AWS_CONFIG_FILE=/dev/null"),

@@ -7,12 +7,12 @@
 
 namespace meshorder::exodus {
 
-/// Loads netCDF and HDF5 in builds that load them on demand. Throws Unavailable if one is not found.
+/// Loads netCDF and HDF5 in builds that load them on demand. Throws Unavailable if a library is not found.
 void load_library();
 
-/// While an object of this class lives, other threads cannot enter libnetcdf or libhdf5, and no plug-ins are
-/// loaded. The first object starts libnetcdf and keeps it from reading settings in the current folder or in
-/// HOME (.ncrc, .daprc, .dodsrc) and cloud credentials.
+/// A lock on libnetcdf and libhdf5: while it lives, no other thread can enter them, and no plug-ins are
+/// loaded. The first object starts libnetcdf and keeps libnetcdf from reading settings in the current folder
+/// or in HOME (.ncrc, .daprc, .dodsrc) and cloud credentials.
 class Library {
  public:
   Library();

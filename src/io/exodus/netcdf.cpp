@@ -30,7 +30,7 @@ const NcType kDouble = NC_DOUBLE;
 
 namespace {
 
-constexpr const char* kNameInMemory = "mesh";   // netCDF might take another name for a URL
+constexpr const char* kNameInMemory = "mesh";   // netCDF might read another name as a URL
 constexpr std::uint64_t kMostExpansion = 1032;  // largest ratio that deflate can reach
 constexpr std::size_t kBuffer = std::size_t{1} << 18;
 
@@ -369,7 +369,7 @@ NcOutput::NcOutput(const FilePath& path, const Storage& storage)
   if (is_in_memory_) {
     // initial size 0: a file never becomes smaller than its initial size
     check(nc_create_mem(kNameInMemory, NC_CLOBBER | creation_mode(storage.kind), 0, &id_), "");
-    // fill mode stays on: the library does not write the bytes between variables, so they would be arbitrary
+    // fill mode stays on: otherwise the bytes between variables, which the library skips, would be arbitrary
   } else {
     out_->close();
     create(out_->temporary());
@@ -403,7 +403,7 @@ void NcOutput::check(int status, const std::string& what) const {
 }
 
 void NcOutput::put_attribute(int variable, const Attribute& attribute, const std::string& of) const {
-  if (attribute.name == "_NCProperties") return;  // netCDF writes this attribute
+  if (attribute.name == "_NCProperties") return;  // netCDF writes this attribute itself
   if (attribute.type == kChar) {
     check(nc_put_att_text(id_, variable, attribute.name.c_str(), attribute.count, attribute.bytes.data()),
           of);

@@ -20,7 +20,7 @@
 #include <vector>
 
 /// Files of netCDF, read and written through its C library. The library allows one call at a time: each
-/// object of these classes holds a lock of the whole process.
+/// NcInput and each NcOutput holds a lock of the process.
 namespace meshorder::exodus {
 
 /// A type of values in netCDF, with its number in netcdf.h.
@@ -33,7 +33,7 @@ extern const NcType kDouble;
 
 /// Returns whether values of the type are whole numbers.
 bool is_whole(NcType type);
-/// Returns the bytes of a value, 0 for strings and user-defined types.
+/// Returns the size of a value in bytes, 0 for strings and user-defined types.
 std::size_t size_of(NcType type);
 /// Returns whether a type can hold each of the values exactly. Only the real types can hold NaN.
 /// O(values).
@@ -76,7 +76,7 @@ struct Variable {
 struct Storage {
   int kind;              ///< kind of the file, as nc_inq_format returns it
   int deflate = 0;       ///< level of compression, 0 to 9
-  bool shuffle = false;  ///< bytes are sorted before compression
+  bool shuffle = false;  ///< bytes are shuffled before compression
 };
 
 /// Returns the storage of new files: netCDF-3 with 64-bit offsets, or CDF-5 if `large`.
@@ -90,7 +90,7 @@ void check_classic_header(const std::string& file, const std::function<std::stri
 /// A file that is read.
 class NcInput {
  public:
-  /// Opens a file. Throws InputError if it does not exist or is not a netCDF file.
+  /// Opens a file. Throws InputError if it cannot be read or is not a valid netCDF file.
   explicit NcInput(const FilePath& path);
   ~NcInput();
   NcInput(const NcInput&) = delete;
@@ -104,8 +104,8 @@ class NcInput {
   [[nodiscard]] const Variable* find(const std::string& name) const;
   /// Returns the length of a dimension, 0 if there is no such dimension.
   [[nodiscard]] std::size_t length(const std::string& name) const;
-  /// Returns the length of a dimension that counts items of the file. Throws InputError if it exceeds the
-  /// file's size in bytes.
+  /// Returns the length of a dimension that counts items of the file. Throws InputError if the length exceeds
+  /// the file's size in bytes.
   [[nodiscard]] std::size_t count(const std::string& dimension) const;
   /// Returns the lengths along a variable's dimensions.
   [[nodiscard]] std::vector<std::size_t> shape(const Variable& variable) const;
@@ -209,10 +209,10 @@ class NcOutput {
   NcOutput& operator=(NcOutput&&) = delete;
 
   void attribute(const Attribute& attribute);
-  /// Declares a dimension, which may be declared several times. Returns false if it exists with another
-  /// length.
+  /// Declares a dimension, which may be declared several times. Returns false if the dimension exists with
+  /// another length.
   bool dimension(const Dimension& dimension);
-  /// Declares a variable. A function given to `later` writes its values.
+  /// Declares a variable. A function given to `later` writes the variable's values.
   NcSink variable(const std::string& name, NcType type, const std::vector<std::string>& dimensions,
                   const std::vector<Attribute>& attributes = {});
   /// Adds a function that `finish` calls.

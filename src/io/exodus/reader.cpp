@@ -14,7 +14,7 @@
 #include <optional>
 #include <tuple>
 
-// Reads a file: points, elements and their numbers, and the variables that are kept as they are.
+// Reads a file: points, elements and their numbers, and the netCDF variables that are kept as they are.
 
 namespace meshorder::exodus {
 
@@ -113,7 +113,6 @@ void refuse_unknown_kinds(const NcInput& file) {
   }
 }
 
-/// Returns whether a name is one of a list.
 template <std::size_t Size>
 bool is_one_of(const std::string& name, const std::array<std::string_view, Size>& names) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -141,7 +140,7 @@ void leave_out_decomposition(Reading& reading) {
   reading.notes.emplace_back("is a piece of a decomposed mesh: its communication maps are left out");
 }
 
-/// Reads the numbers of nodes and elements, and sets the ranges to read.
+/// Reads how many dimensions, nodes and elements a mesh has, and sets the ranges to read.
 void read_counts(Reading& reading) {
   const NcInput& file = reading.file;
   reading.nodes = checked_length(file, "num_nodes");
@@ -184,7 +183,7 @@ void read_points(Reading& reading) {
   }
 }
 
-/// Appends to the mesh the elements of a block that are in the range.
+/// Appends those elements of a block that are in the range to the mesh.
 void read_elements(Reading& reading, const Variable& connect, std::size_t b) {
   const NcInput& file = reading.file;
   const BlockRecord& block = reading.metadata->blocks[b];
@@ -333,7 +332,8 @@ void name_blocks(Reading& reading) {
   }
 }
 
-/// Fills in the record of block `b`, counted from 0. `connect`: its connectivity, null if there is none.
+/// Fills in the record of block `b`, counted from 0. `connect`: the block's connectivity, null if there is
+/// none.
 void read_block(Reading& reading, std::size_t b, const Variable* connect) {
   const NcInput& file = reading.file;
   BlockRecord& block = reading.metadata->blocks[b];
@@ -365,7 +365,7 @@ void read_block(Reading& reading, std::size_t b, const Variable* connect) {
   block.connect_type = connect->type;
 }
 
-/// Reads the records of the blocks, without elements.
+/// Reads the records of the blocks, but not the elements.
 void read_blocks(Reading& reading) {
   const NcInput& file = reading.file;
   ExodusMetadata& metadata = *reading.metadata;
@@ -409,15 +409,16 @@ void read_nodal_attributes(Reading& reading) {
   }
 }
 
-/// Reads integers of the reading's range; the variable has one for each node or element of the whole mesh.
+/// Returns the integers of the nodes or elements to read; the variable has one for each node or element of
+/// the mesh.
 std::vector<std::int64_t> numbers_of(const Reading& reading, const Variable& variable, Association of) {
   reading.require_shape(variable, {static_cast<std::size_t>(reading.count(of))});
   const auto [first, count] = reading.rows(of);
   return reading.file.integers(variable, {first}, {count});
 }
 
-/// Returns the numbers of nodes or elements; empty if the file has none, or if a whole mesh is read and the
-/// numbers are 1, 2, …
+/// Returns the numbers of nodes or elements; empty if the file has none. If a whole mesh is read, also empty
+/// if the numbers are 1, 2, …, or if one is repeated, which adds a note.
 std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& name, Association of,
                                        bool& is_there) {
   const Variable* const variable = reading.take(name);
@@ -471,8 +472,8 @@ void read_maps(Reading& reading) {
   read_named_maps(reading, "elem", "em", Association::cells, metadata.element_maps);
 }
 
-/// Returns whether a dimension counts nodes or elements. If so, its variables depend on the order of the
-/// nodes or elements.
+/// Returns whether a dimension counts nodes, elements or entries of a set. If so, its variables depend on the
+/// order of the mesh.
 bool is_of_nodes_or_elements(const Reading& reading, const Dimension& dimension) {
   constexpr std::array<std::string_view, 6> kWhole{"num_nodes", "num_elem", "num_edge",
                                                    "num_face",  "num_node", "num_elements"};
@@ -495,7 +496,7 @@ bool is_of_nodes_or_elements(const Reading& reading, const Dimension& dimension)
          dimension.length == static_cast<std::size_t>(reading.elements);
 }
 
-/// Keeps the variables and dimensions that are not supported, unless they depend on the order of the mesh.
+/// Keeps attributes, and all other variables and dimensions unless they depend on the order of the mesh.
 void keep_others(Reading& reading) {
   const NcInput& file = reading.file;
   ExodusMetadata& metadata = *reading.metadata;

@@ -25,7 +25,7 @@ struct Reading {
   Reading(const FilePath& path, const MeshRanges* wanted, Notes& warnings)
       : file(path), ranges_wanted(wanted), metadata(std::make_shared<ExodusMetadata>()), notes(warnings) {}
 
-  /// Returns the variable of that name, null if there is none, and marks it as understood.
+  /// Returns the variable of that name and marks it as understood; null if there is none.
   const Variable* take(const std::string& name);
   /// Returns `count` texts of a table of names; empty texts if the table does not exist.
   std::vector<std::string> take_names(const std::string& name, std::size_t count);
@@ -49,16 +49,16 @@ struct Reading {
   [[nodiscard]] Index count(Association association) const {
     return association == Association::vertices ? nodes : elements;
   }
-  /// Returns the rows to read of a variable with a row for each vertex or cell.
+  /// Returns which rows to read of a variable that has a row for each vertex or cell.
   [[nodiscard]] Rows rows(Association association) const {
     const MeshRange own = range(association);
     return {static_cast<std::size_t>(own.first), static_cast<std::size_t>(own.size())};
   }
-  /// Returns the range of a block's cells that are read.
+  /// Returns the range of those cells of a block that are read.
   [[nodiscard]] MeshRange own_of_block(std::size_t b) const {
     return MeshRange{block_ends[b], block_ends[b + 1]}.common(part.ranges.cells);
   }
-  /// Returns the rows to read of a variable with a row for each cell of a block.
+  /// Returns which rows to read of a variable that has a row for each cell of a block.
   [[nodiscard]] Rows rows_of_block(std::size_t b) const {
     const MeshRange own = own_of_block(b);
     return {static_cast<std::size_t>(own.first - block_ends[b]), static_cast<std::size_t>(own.size())};
@@ -69,7 +69,7 @@ struct Reading {
   }
   /// Returns the block of a cell of the whole mesh. O(log blocks).
   [[nodiscard]] const BlockRecord& block_of(Index cell) const;
-  /// Returns the largest number of values of a list to read at a time; unlimited if the whole mesh is read.
+  /// Returns how many values of a list to read at a time; unlimited if the whole mesh is read.
   [[nodiscard]] std::size_t values_at_once() const noexcept {
     return is_whole() ? std::numeric_limits<std::size_t>::max() : std::size_t{1} << 18;
   }

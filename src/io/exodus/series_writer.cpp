@@ -11,12 +11,12 @@
 #include <limits>
 #include <utility>
 
-// Writes the variables of nodes and elements, step by step.
+// Writes the nodal and element variables, step by step.
 
 namespace meshorder::exodus {
 namespace {
 
-/// Vertices or cells whose values are in one netCDF variable.
+/// A netCDF variable, and the vertices or cells whose values it holds.
 struct Target {
   NcSink sink;
   std::vector<std::size_t> starts;  ///< start indices of the values in the variable, at the first step
@@ -24,8 +24,7 @@ struct Target {
   Index count;
 };
 
-/// Writes the values of a variable of nodes or elements at all steps, along the last dimension of each
-/// target.
+/// Writes a nodal or element variable at all steps to the targets, along the last dimension of each.
 void put_steps(const SeriesPlan& series, Index items, std::vector<Target> targets) {
   const DataArray* last = nullptr;
   std::vector<Index> table;
@@ -50,7 +49,7 @@ void put_steps(const SeriesPlan& series, Index items, std::vector<Target> target
   }
 }
 
-/// Returns the type in which an array is written if it did not come from an Exodus file.
+/// Returns the type in which to write an array that did not come from an Exodus file.
 NcType type_for(const DataArray& array) {
   return std::holds_alternative<std::vector<float>>(array.values) ? kFloat : kDouble;
 }
@@ -143,7 +142,7 @@ class SeriesPlanner {
   std::vector<SeriesPlan> plans_;
 };
 
-/// Returns the type of the variable "vals_nod_var", which holds all nodal variables.
+/// Returns the type of the netCDF variable "vals_nod_var", which holds all nodal variables.
 NcType type_of_all(const std::vector<SeriesPlan>& series) {
   const NcType first = series.front().type;
   const bool is_one =
@@ -151,7 +150,7 @@ NcType type_of_all(const std::vector<SeriesPlan>& series) {
   return is_one ? first : kDouble;
 }
 
-/// Returns, for each block, the number of cells for which an array has a row.
+/// Returns how many cells of each block have a row in an array.
 std::vector<Index> rows_in_blocks(Writing& writing, const DataArray& array) {
   std::vector<Index> rows;
   for (const BlockPlan& block : writing.blocks) rows.push_back(array.is_dense() ? block.cells.count : 0);
@@ -160,14 +159,14 @@ std::vector<Index> rows_in_blocks(Writing& writing, const DataArray& array) {
   return rows;
 }
 
-/// How a variable appears in a block.
+/// How an element variable appears in a block.
 struct Presence {
   bool in_table = false;
   bool declared = false;
 };
 
-/// Returns how a variable appears in each block. A block that never had values keeps its entries from the
-/// file that the mesh came from.
+/// Returns how an element variable appears in each block. A block that never had values keeps its entries
+/// from the file that the mesh came from.
 std::vector<Presence> presence(Writing& writing, const SeriesPlan& series) {
   std::vector<Presence> result(writing.blocks.size());
   for (std::size_t b = 0; b < result.size(); ++b) {

@@ -29,12 +29,12 @@ struct Entries {
   int most_nodes = 0;  ///< largest number of nodes of an entry of the list, read or not
 };
 
-/// The members of a set, each once, in the sequence of their first entries.
+/// The members of a set, each once, in the order of their first entries.
 struct Members {
   std::vector<Index> members;
   std::vector<Index> places;        ///< position of each member's first entry
   std::vector<std::int32_t> masks;  ///< sides of each member: bit s − 1 for side s
-  std::vector<Index> row_of_entry;  ///< for each entry, the index of its member here; −1 if it is repeated
+  std::vector<Index> row_of_entry;  ///< for each entry, the index of its member here; −1 for a repeated entry
   int most_sides = 1;               ///< largest number of sides of a member
 };
 
@@ -107,7 +107,7 @@ class SetReader {
     const std::vector<std::int64_t> table = read_table(reading_, of, count, family_.variables.size());
     (void)file.claimed(
         "the records of " + prefix, count,
-        sizeof(SetRecord) + family_.variables.size() * 2 * sizeof(Series));  // 2: with their arrays
+        sizeof(SetRecord) + family_.variables.size() * 2 * sizeof(Series));  // doubled for arrays
     for (std::size_t s = 0; s < count; ++s) {
       SetRecord& set = family_.sets[s];
       set.variables.resize(family_.variables.size());
@@ -122,12 +122,12 @@ class SetReader {
   }
 
  private:
-  /// Returns the name of the netCDF variable with the values of variable `v` (from 0) on a set (from 1).
+  /// Returns the name of the netCDF variable of set variable `v` (from 0) on set `set` (from 1).
   [[nodiscard]] std::string name_of_values(std::size_t v, std::size_t set) const {
     return fmt::format("vals_{}_var{}{}{}", kind_.variable, v + 1, kind_.prefix, set);
   }
 
-  /// Converts a number of a list to a position from 0. Throws InputError if the item does not exist.
+  /// Returns the position, from 0, of the item with a number. Throws InputError if the item does not exist.
   [[nodiscard]] Index place_of(std::int32_t number, const Variable& variable, std::size_t entry) const {
     const auto limit = static_cast<std::uint32_t>(reading_.count(kind_.association));
     const std::uint32_t place = static_cast<std::uint32_t>(number) - 1;
@@ -172,7 +172,8 @@ class SetReader {
     set.in_mesh = is_sides_ ? "" : reading_.add_set({set.in_mesh, kind_.association, {}});
   }
 
-  /// Notes that repeated entries are dropped. If only a part is read, records the counts for the caller.
+  /// Notes that repeated entries are dropped. If only a part is read, instead records the counts for the
+  /// caller.
   void note_repeated(const SetRecord& set, std::size_t size, const std::vector<Index>& row_of_entry) {
     const std::string name = title(kind_, set.in_mesh);
     const auto repeated = std::count(row_of_entry.begin(), row_of_entry.end(), Index{-1});
@@ -247,14 +248,14 @@ class SetReader {
                               {true, reading_.is_whole() ? std::vector<Index>() : set.places});
   }
 
-  /// The values of an entry in a list of values.
+  /// Where the values of an entry are in a list of values.
   struct Piece {
     Offset begin;
     int length;
   };
 
-  /// Adds an array with a row for each member: the values of its sides, ascending by side, the values of each
-  /// side padded to `width`.
+  /// Adds an array with a row for each member: the values of its sides in ascending order, `width` values for
+  /// each side, padded.
   ///
   /// @param piece_of  returns the piece of entry i; the pieces ascend
   /// @param read      `read(first, count)` returns values of the list. Pieces that lie within
@@ -322,7 +323,7 @@ class SetReader {
                });
   }
 
-  /// Adds an array for each variable of a set and each step.
+  /// Adds an array for each set variable and each step.
   void read_set_variables(std::size_t number, SetRecord& set, std::size_t size, const Entries& own,
                           const Members& members) {
     for (std::size_t v = 0; v < family_.variables.size(); ++v) {
@@ -352,9 +353,10 @@ class SetReader {
   bool is_sides_;
 };
 
-// ---- variables of nodes and elements
+// ---- nodal and element variables
 
-/// Converts labels that are whole numbers to 32-bit integers, as other formats have them. Keeps other arrays.
+/// Converts labels that are whole numbers to 32-bit integers, as other formats have them. Returns other
+/// values unchanged.
 Values as_labels(const std::string& name, Values values) {
   const auto* const reals = std::get_if<std::vector<double>>(&values);
   if (name != kLabel || reals == nullptr) return values;
@@ -423,14 +425,14 @@ void read_nodal(Reading& reading) {
 
 namespace {
 
-/// The netCDF variables with the values of a variable of elements, for the blocks that have elements.
+/// The netCDF variables that hold an element variable, for the blocks that have elements.
 struct ElementVariable {
   std::vector<std::size_t> blocks;
   std::vector<const Variable*> of_block;
   bool is_of_one_type = true;
 };
 
-/// Finds the values of variable `v` of elements, and fills in its series. `table`: see `read_table`.
+/// Finds the netCDF variables of element variable `v`, and fills in `series`. `table`: see `read_table`.
 ElementVariable find_element_variable(Reading& reading, std::size_t v, const std::vector<std::int64_t>& table,
                                       std::size_t count, Series& series) {
   ElementVariable result;
@@ -449,8 +451,8 @@ ElementVariable find_element_variable(Reading& reading, std::size_t v, const std
   return result;
 }
 
-/// Returns the values of a variable of elements at a step; as real numbers if blocks have different types.
-/// `keeps_digits` becomes false if real numbers cannot hold the values exactly.
+/// Returns the values of an element variable at a step; as real numbers if blocks have different types.
+/// `keeps_digits` becomes false if `type` is kDouble and cannot hold the values exactly.
 Values values_at(const Reading& reading, const ElementVariable& variable, NcType type, std::size_t step,
                  bool& keeps_digits) {
   Values result;

@@ -15,7 +15,7 @@
 namespace meshorder::exodus {
 namespace {
 
-/// Finds the rows of an array for vertices or cells, in memory proportional to its rows.
+/// Finds the row of a vertex or cell in an array, with memory proportional to the array's rows.
 class SparseRows {
  public:
   explicit SparseRows(const DataArray& array) {
@@ -37,7 +37,7 @@ class SparseRows {
   bool is_dense_ = false;
 };
 
-/// Parses a text of one to nine digits as a number; returns −1 for other texts.
+/// Returns the number that a text of one to nine digits forms; −1 for other texts.
 std::int64_t number_of(std::string_view text) {
   std::int64_t value = -1;
   const bool digits = !text.empty() && text.size() <= 9 &&

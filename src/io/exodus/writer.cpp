@@ -17,8 +17,8 @@
 #include <optional>
 #include <utility>
 
-// Writes a file: points, numbers, maps and variables that are kept as they are. Other source files write
-// blocks, sets and series.
+// Writes a file: points, numbers, maps and the netCDF variables that are kept as they are. Other source files
+// write blocks, sets and series.
 
 namespace meshorder::exodus {
 namespace {
@@ -254,7 +254,7 @@ void write_nodal_attributes(Writing& writing, const Columns& columns) {
   writing.write_names("nattrib_name", count, names_of(columns));
 }
 
-/// Returns a table of names whose rows are lengthened to `length` bytes.
+/// Returns a table of names with its rows lengthened to `length` bytes.
 PlainVariable with_name_length(PlainVariable table, std::size_t length) {
   const std::size_t old = table.dimensions.back().length;
   if (table.type != kChar || old == 0 || length < old) return table;
@@ -268,7 +268,7 @@ PlainVariable with_name_length(PlainVariable table, std::size_t length) {
   return table;
 }
 
-/// Writes the variables and dimensions that are kept as they are. New steps get zeros.
+/// Writes the variables and dimensions that are kept as they are, and `time_whole`. New steps get zeros.
 void write_plain(Writing& writing) {
   NcOutput& file = writing.file;
   for (const PlainVariable& of_file : writing.metadata.plain) {
@@ -303,7 +303,7 @@ void write_plain(Writing& writing) {
   }
 }
 
-/// Returns the length of the longest name, at most `kLongestName`. Notes names that change.
+/// Returns the length of the longest name, at most `kLongestName`. Adds a note for each name that changes.
 std::size_t longest_of(const Writing& writing, const std::vector<std::string>& names) {
   std::size_t longest = 0;
   for (const std::string& name : names) {
@@ -402,7 +402,7 @@ void write_to(const Target& target, const Mesh& mesh, Notes& notes) {
   file.dimension({"time_step", writing.steps, metadata.steps_unlimited || writing.steps == 0});
   file.dimension({"len_name", metadata.name_length});
   file.dimension({"num_dim", static_cast<std::size_t>(dimension)});
-  // netCDF would take a length of 0 as unlimited
+  // netCDF reads a length of 0 as unlimited
   if (!mesh.points.empty()) file.dimension({"num_nodes", mesh.points.size()});
   if (!mesh.cells.shapes.empty()) file.dimension({"num_elem", mesh.cells.shapes.size()});
   file.dimension({"num_el_blk", writing.blocks.size()});
@@ -431,7 +431,7 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
          });
 }
 
-/// Returns why a piece of a decomposed mesh cannot be written: its communication maps would become wrong.
+/// Returns why a piece of a decomposed mesh cannot be written (its maps would become wrong); else empty.
 std::string conflict(const Mesh& mesh) {
   const ExodusMetadata* const own = own_metadata(mesh);
   if (own == nullptr || own->piece.empty()) return {};

@@ -25,7 +25,7 @@ struct BlockPlan {
   std::string name = {};
 
   [[nodiscard]] bool is_full() const noexcept { return cells.count > 0; }
-  /// Returns the type of its elements.
+  /// Returns the name of the elements' type.
   [[nodiscard]] std::string_view type() const;
 };
 
@@ -50,10 +50,10 @@ struct Writing : Planning {
   Writing(const Mesh& written, const ExodusMetadata& of_file, NcOutput& out, Notes& warnings)
       : Planning{written, of_file, warnings}, file(out) {}
 
-  /// Declares a variable; adds the attributes that it had in the file that the mesh came from.
+  /// Declares a variable; adds the attributes that the variable had in the file that the mesh came from.
   NcSink declare(const std::string& variable, NcType type, const std::vector<std::string>& dimensions,
                  std::vector<Attribute> attributes = {});
-  /// Declares a table of names, with rows of the metadata's `name_length`.
+  /// Declares a table of names, with rows of `metadata.name_length` bytes.
   void write_names(const std::string& variable, const std::string& count,
                    const std::vector<std::string>& names);
   /// Declares a variable of whole numbers: with 32 bits if all numbers fit and `type` is not kInt64, else
@@ -66,8 +66,8 @@ struct Writing : Planning {
   std::size_t steps = 0;
 };
 
-/// Returns the type in which to write values: `of_file`, their type in the file that the mesh came from, if
-/// it can hold each value, else double precision.
+/// Returns the type in which to write values: `of_file` if it can hold each value, else double precision.
+/// `of_file`: their type in the file that the mesh came from.
 NcType written_type(NcType of_file, const Values& values);
 
 /// Returns whether all values are integers, or real numbers that are whole and at most 2^52 in size.
@@ -96,8 +96,8 @@ std::vector<std::string> names_of(const std::vector<Plan>& plans) {
   return names;
 }
 
-/// Declares the status, ids, properties and names of blocks or sets. The names of the variables begin with
-/// `prefix`, `count` is their dimension. `labels`: a property of new blocks, empty if there is none.
+/// Declares the status, ids, properties and names of blocks or sets. The names of the netCDF variables begin
+/// with `prefix`; `count` is their dimension. `labels`: values of `kLabelProperty`; empty: no such property.
 template <class Plan>
 void write_plans(Writing& writing, const std::string& prefix, const std::string& count,
                  const std::vector<Plan>& plans, const std::vector<std::string>& properties, bool has_names,
@@ -135,8 +135,8 @@ void in_parts(Index count, const Put& put) {
     put(first, std::min(kRowsAtOnce, count - first));
 }
 
-/// Returns one component of an array for `count` vertices or cells from `first` on; `missing` for each one
-/// without a row. `table`: see `rows_by_item`.
+/// Returns one component of an array for `count` vertices or cells from `first` on; `missing` for vertices or
+/// cells without a row. `table`: see `rows_by_item`.
 template <class Number>
 std::vector<Number> column(const DataArray& array, Index component, const std::vector<Index>& table,
                            Index first, Index count, Number missing) {
@@ -156,8 +156,8 @@ void write_columns(Writing& writing, const std::string& variable, NcType type,
                    const std::vector<std::string>& dimensions, const Columns& columns, Index first,
                    Index count);
 
-/// Calls `put(missing)`, where `missing` is the number that marks missing values in a variable of a type.
-/// `put` writes an array, which may be null, as numbers of the type of `missing`.
+/// Calls `put(missing)`; `missing` marks missing values in a netCDF variable of the type. `put` writes
+/// `array`, which may be null, as numbers of the type of `missing`.
 template <class Put>
 void put_as(NcType type, const DataArray* array, const Put& put) {
   const bool is_wide = array != nullptr && std::holds_alternative<std::vector<std::uint64_t>>(array->values);
@@ -170,8 +170,8 @@ void put_as(NcType type, const DataArray* array, const Put& put) {
 /// Divides the cells, which already are in the order of the file, into `planning.blocks`.
 void plan_blocks(Planning& planning, bool is_own);
 
-/// Gives a block the name of a set with exactly the cells of the block, unless the set was an element set in
-/// the file. Returns the other sets of cells.
+/// Names each block after a set that has exactly its cells, unless the set was an element set in the file.
+/// Returns all other sets of cells.
 std::vector<const EntitySet*> name_blocks(Planning& planning);
 
 /// Returns the attributes of a block. A block of the file that the mesh came from keeps the file's
@@ -191,7 +191,7 @@ struct SetPlan {
   std::vector<Index> ranks = {};           ///< rank of each side among the sides of its element in the set
   const DataArray* factors = nullptr;
   std::vector<int> factor_counts = {};  ///< side sets: number of factors of each side; empty if all are 1
-  int factor_width = 1;                 ///< side sets: components of the array for one side
+  int factor_width = 1;                 ///< side sets: number of the array's components for a side
   std::vector<std::vector<const DataArray*>> variables = {};  ///< by variable and step, as in `record`
 
   [[nodiscard]] bool is_full() const noexcept { return !members.empty(); }
@@ -202,10 +202,10 @@ struct SetPlan {
 std::vector<std::vector<SetPlan>> plan_sets(Planning& planning,
                                             const std::vector<const EntitySet*>& element_sets);
 
-/// Declares the sets with their factors and variables. `steps` must be known.
+/// Declares the sets with their factors and variables. `writing.steps` must be set.
 void write_sets(Writing& writing, const std::vector<std::vector<SetPlan>>& plans);
 
-/// The plan for a variable of nodes or elements.
+/// The plan for a nodal or element variable.
 struct SeriesPlan {
   std::string name;
   NcType type = kDouble;
@@ -215,8 +215,8 @@ struct SeriesPlan {
   std::vector<bool> declared = {};  ///< as in Series
 };
 
-/// Returns the variables of nodes or elements: the variables of the file that the mesh came from, then one
-/// variable for each component of each array that is not in `placed`. Notes arrays that no variable can hold.
+/// Returns the nodal or element variables: those of the file that the mesh came from, then one for each
+/// component of each array that is not in `placed`. Notes arrays that no variable can hold.
 std::vector<SeriesPlan> plan_series(Planning& planning, Association association);
 
 void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series);

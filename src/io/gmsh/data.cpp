@@ -134,7 +134,7 @@ Entries read_entries(ReadContext& reading, const View& view) {
   return entries;
 }
 
-/// Returns the values of the entries as rows of one width, padded with 0; `width` receives their width.
+/// Returns the values of the entries as rows of one width, padded with 0; `width` receives this width.
 std::vector<double> even_rows(const ReadContext& reading, Entries& entries, const View& view, Index& width) {
   const int components = view.integers[1];
   int most = 1;
@@ -186,7 +186,7 @@ Index gmsh_components(Index components) {
   return 0;
 }
 
-/// Keeps the names of the arrays of a mesh distinct.
+/// Keeps the array names of a mesh distinct.
 class ArrayNames {
  public:
   explicit ArrayNames(const Mesh& mesh) {
@@ -280,7 +280,7 @@ bool has_place(const DataArray& array) {
   return !are_texts(array.values) && gmsh_components(array.components) > 0;
 }
 
-/// Returns the number of components of a view of an array that `has_place`. Notes changes.
+/// Returns the number of components of a view for an array that `has_place`. Notes changes.
 Index components_of_view(const DataArray& array, Notes& notes) {
   const Index components = gmsh_components(array.components);
   if (components != array.components) {

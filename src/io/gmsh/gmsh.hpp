@@ -39,15 +39,15 @@ struct ElementType {
   int nodes;
 };
 
-/// Returns the type with that number, or nullptr if it has no fixed number of nodes or no Shape.
+/// Returns a type by number; nullptr if unknown, or without a Shape or a fixed number of nodes.
 const ElementType* find_type(int number);
 
 /// Returns the type of cells of that shape with `nodes` vertices, or nullptr. If Gmsh has two such types (the
 /// complete and the serendipity quad of 16 nodes), returns the complete one.
 const ElementType* find_type(Shape shape, int nodes);
 
-/// Returns Gmsh's order of nodes: order[k] is the position in Gmsh's list of the k-th node in VTK's order.
-/// Empty if the two agree or VTK has no such cell.
+/// Returns, for each node in VTK's order, the position in Gmsh's list; empty if both orders agree or VTK has
+/// no such cell.
 std::span<const int> vtk_order(Shape shape, int nodes);
 
 // ---- names of the arrays that keep data of Gmsh's files
@@ -55,8 +55,8 @@ std::span<const int> vtk_order(Shape shape, int nodes);
 inline constexpr std::string_view kCellEntity = "gmsh:geometrical";    ///< tag of each cell's entity
 inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< dimension of each cell's entity
 inline constexpr std::string_view kCellType = "gmsh:type";  ///< Gmsh's type if shape and nodes leave a choice
-inline constexpr std::string_view kCellPartitions = "gmsh:partitions";  ///< 2.2: tags from the third on
-inline constexpr std::string_view kCellTagCount = "gmsh:tag_count";     ///< 2.2: if it differs among cells
+inline constexpr std::string_view kCellPartitions = "gmsh:partitions";  ///< 2.x: tags from the third on
+inline constexpr std::string_view kCellTagCount = "gmsh:tag_count";     ///< 2.x: number of tags if it differs
 inline constexpr std::string_view kCellGhosts = "gmsh:ghosts";    ///< owner, number of ghosts, ghosts, zeros
 inline constexpr std::string_view kNodeEntity = "gmsh:dim_tags";  ///< dimension and tag of a node's entity
 inline constexpr std::string_view kNodeParameters = "gmsh:parametric";  ///< 1 if given, else 0; u, v, w
@@ -79,7 +79,7 @@ struct View {
   int nodes = 1;  ///< nodes per cell, for PerElement::fixed
 };
 
-/// A periodic entity of $Periodic. Its pairs of nodes are two sets of the mesh with the same order.
+/// A periodic entity of $Periodic. Its nodes and their masters are two sets, in the same order.
 struct PeriodicLink {
   std::int32_t dimension = 0;
   std::int32_t tag = 0;
@@ -95,7 +95,7 @@ struct PhysicalName {
   std::string name;
 };
 
-/// The head of a block that may be empty: dimension, tag, and `parametric` (nodes) or type (elements).
+/// The head of a block: the entity's dimension and tag; `parametric` (nodes) or type (elements).
 using EmptyBlock = std::array<std::int32_t, 3>;
 
 enum class SectionKind : std::uint8_t { format, verbatim, nodes, elements, periodic, ghosts, view };
@@ -139,8 +139,8 @@ struct GmshMetadata : FormatMetadata {
 
 // ---- reading
 
-/// Maps the numbers of nodes or elements to their positions; clears `ids` if they are 1, 2, 3 … Fails for
-/// negative numbers and for numbers that are given twice; `what` is "node" or "element".
+/// Returns a map from the numbers of nodes or elements to positions; clears `ids` if they are 1, 2, 3 … Fails
+/// for negative numbers and for numbers that are given twice; `what` is "node" or "element".
 IdMap number_ids(const NumberReader& source, std::vector<std::int64_t>& ids, std::string_view what);
 
 /// The state of the reader.
@@ -166,7 +166,8 @@ void expect_end(ReadContext& reading, std::string_view section);
 inline std::int64_t read_number(ReadContext& reading, std::string_view what) {
   return reading.metadata.has_wide_numbers() ? reading.source.int64(what) : reading.source.int32(what);
 }
-/// Reads a count as `read_number`. `text_bytes` and `binary_bytes`: least bytes of an item (Scanner::count).
+/// Reads a count like `read_number`. `text_bytes` and `binary_bytes`: least bytes of an item
+/// (Scanner::count).
 inline Index read_count(ReadContext& reading, std::string_view what, std::int64_t text_bytes,
                         std::int64_t binary_bytes) {
   const std::int64_t count = read_number(reading, what);
@@ -182,7 +183,7 @@ void add_cell(Mesh& mesh, const ElementType& type, std::span<const Index> nodes)
 [[noreturn]] void fail_unknown_node(const ReadContext& reading, std::int64_t id, std::string_view owner,
                                     std::int64_t owner_id);
 
-/// Returns the vertex with the number `id`; fails, naming its owner, if there is none.
+/// Returns the vertex with the number `id`; fails, naming the owner, if there is none.
 inline Index place_of_node(const ReadContext& reading, std::int64_t id, std::string_view owner,
                            std::int64_t owner_id) {
   const Index place = reading.nodes.find(id);
@@ -196,7 +197,7 @@ void keep_array(Mesh& mesh, std::string_view name, Association association, Inde
 /// Adds the array kCellType if shape and number of nodes do not determine the type of every cell.
 void keep_unusual_types(Mesh& mesh, const std::vector<std::int32_t>& numbers);
 
-/// Adds the array kNodeParameters with these values; nodes beyond these values have none.
+/// Adds the array kNodeParameters with these values; later nodes have no parameters.
 void keep_parameters(Mesh& mesh, std::vector<double> values);
 
 /// Fails if `rows` contains a row twice; `section` is for the message. O(rows · log rows).
@@ -301,9 +302,9 @@ struct WriteContext {
   std::vector<const ElementType*> types;      ///< type of each cell
   std::vector<std::int64_t> node_ids;         ///< empty: 1, 2, 3 …
   std::vector<std::int64_t> cell_ids;         ///< empty: 1, 2, 3 …
-  std::vector<std::int32_t> cell_dimensions;  ///< 4.1: of each cell's entity
-  std::vector<std::int32_t> cell_tags;        ///< 4.1: of each cell's entity
-  std::vector<std::int32_t> node_entities;    ///< 4.1, $ParametricNodes: dimension and tag for each node
+  std::vector<std::int32_t> cell_dimensions;  ///< 4.x: of each cell's entity
+  std::vector<std::int32_t> cell_tags;        ///< 4.x: of each cell's entity
+  std::vector<std::int32_t> node_entities;    ///< 4.x, $ParametricNodes: dimension and tag for each node
   std::vector<const DataArray*> placed;       ///< arrays that other sections hold: they need no view
   NamedParts parts;                           ///< arrays and sets of the mesh, by name
 
@@ -318,20 +319,20 @@ std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, A
 const std::vector<double>* parameters_of(const Mesh& mesh);
 
 /// Makes entities, physical groups and their names for a mesh without a Gmsh layout, from its labels, its
-/// sets of cells and the entities that it may have kept from an earlier conversion.
+/// sets of cells and any entities kept from an earlier conversion.
 void classify(GmshMetadata& layout, WriteContext& output, Notes& notes);
 
 /// Adds a view for an array that has no view yet, or a note if Gmsh cannot hold it.
 void add_view(GmshMetadata& layout, const DataArray& array, Notes& notes);
 
-/// If an array of a view was replaced, adapts the view to the components of the new array. A view that cannot
-/// hold the new array gets no array. Notes changes.
+/// Adapts each view whose array was replaced to the components of the new array. A view that cannot hold the
+/// new array gets no array. Notes changes.
 void refit_views(GmshMetadata& layout, const NamedParts& parts, Notes& notes);
 
 /// Returns a name that fits between double quotes in one line.
 std::string name_in_quotes(std::string_view name);
 
-/// Writes the numbers of a cell's nodes in Gmsh's order, as size_t (4.1) if `wide`, else as int.
+/// Writes the numbers of a cell's nodes in Gmsh's order, as size_t if `wide`, else as int.
 void write_cell_nodes(RowWriter& to, const WriteContext& output, Index c, bool wide);
 
 void write_nodes_2(NumberWriter& sink, const WriteContext& output);

@@ -16,7 +16,7 @@
 namespace meshorder::gmsh {
 namespace {
 
-/// Returns dimension and tag of a cell's entity, from the arrays of the mesh.
+/// The dimension and tag of a cell's entity, from the arrays of the mesh.
 struct CellEntities {
   explicit CellEntities(const Mesh& mesh)
       : tags(integers_of(mesh, kCellEntity, Association::cells)),
@@ -117,9 +117,9 @@ Groups groups_by_label(const Mesh& mesh, const std::vector<std::int32_t>& labels
   return result;
 }
 
-/// Splits each group: its cells that are in the set become a new group with `physical`; its other cells stay.
+/// Splits groups: the cells of a group that are in the set become a new group with `physical`.
 void split_by_set(Groups& groups, const EntitySet& set, std::int32_t physical) {
-  std::map<Index, Index> inside;  // new group of each group's cells in the set
+  std::map<Index, Index> inside;  // new group by old group
   std::set<Index> parts;          // the new groups
   for (const Index c : set.members) {
     const Index group = groups.of_cell[c];
@@ -135,7 +135,7 @@ void split_by_set(Groups& groups, const EntitySet& set, std::int32_t physical) {
   }
 }
 
-/// Gives each group with cells a tag: the first group that wants a tag gets it, the other groups get new
+/// Gives each group with cells a box and a tag. The first group that wants a tag gets it, others get new
 /// tags.
 void assign_tags(const Mesh& mesh, Groups& groups) {
   std::array<std::int32_t, 4> last{};
@@ -157,8 +157,8 @@ void assign_tags(const Mesh& mesh, Groups& groups) {
   }
 }
 
-/// Returns the entity of each node: its entity in the array kNodeEntity if that array is valid, else the
-/// first entity of the highest dimension. Adds new entities to `entities`.
+/// Returns each node's entity: from the array kNodeEntity if that array is valid, else the first entity of
+/// the highest dimension. Adds new entities to `entities`.
 std::vector<std::int32_t> entities_of_nodes(const Mesh& mesh, std::map<Entity, Group>& entities,
                                             WriteContext& output) {
   std::vector<std::int32_t> kept = integers_of(mesh, kNodeEntity, Association::vertices);
@@ -212,10 +212,10 @@ std::string names_text(const std::vector<PhysicalName>& names) {
 /// Number of cells by dimension and label.
 using LabelCounts = std::map<std::pair<std::int32_t, std::int32_t>, Index>;
 
-/// Finds the labels that are the numbers of sets. In a mesh that came from Gmsh, the label of a cell is the
-/// number of its first physical group, and each named group is a set. If a group is the first group of all
-/// its cells, its set has exactly the cells whose label is the group's number. The set of any other group
-/// also has cells with labels of other groups.
+/// The labels that are the numbers of sets. In a mesh that came from Gmsh, a cell's label is the number of
+/// its first physical group, and each named group is a set. If a group is the first group of each of its
+/// cells, its set has exactly the cells with the group's number as label. Other sets also have cells with
+/// other labels.
 class NumbersOfSets {
  public:
   NumbersOfSets(const Mesh& mesh, const std::vector<std::int32_t>& labels)
@@ -236,7 +236,7 @@ class NumbersOfSets {
   [[nodiscard]] std::int32_t operator[](std::size_t set) const { return number_[set]; }
 
  private:
-  /// Gives set s its number if it finds a number. `only`: all cells of the set must have that label.
+  /// Gives set s a label as its number if one fits. `only`: all cells of the set must have that label.
   void claim(std::size_t s, bool only) {
     if (number_[s] != 0) return;
     for (const auto& [key, count] : inside_[s]) {
@@ -259,11 +259,11 @@ class NumbersOfSets {
 
   std::vector<std::int32_t> number_;
   LabelCounts all_;
-  std::vector<LabelCounts> inside_;  ///< for each set, its cells by dimension and label
+  std::vector<LabelCounts> inside_;  ///< for each set, counts by dimension and label
   std::set<std::pair<std::int32_t, std::int32_t>> taken_;
 };
 
-/// Turns the sets of cells into named physical groups. Their numbers are labels (see NumbersOfSets) or new.
+/// Turns sets of cells into physical groups, numbered by labels (see NumbersOfSets) or anew; returns names.
 std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups,
                                          const std::vector<std::int32_t>& labels, Notes& notes) {
   const NumbersOfSets numbers(mesh, labels);

@@ -37,7 +37,7 @@ Index read_affine(ReadContext& reading, PeriodicLink& link) {
   return source.count(kCount, 4, reading.metadata.has_wide_numbers() ? 16 : 8);
 }
 
-/// Reads pairs of nodes as two sets. Returns the number of pairs that name a missing node: they are left out.
+/// Reads pairs of nodes as two sets. Returns the number of pairs that name a missing node and are left out.
 Index read_pairs(ReadContext& reading, PeriodicLink& link, Index count) {
   const std::string name = "gmsh:periodic " + std::to_string(link.dimension) + " " + std::to_string(link.tag);
   EntitySet nodes{name, Association::vertices, {}};

@@ -26,7 +26,7 @@ const std::set<std::string_view> kDataSections{"NodeData", "ElementData", "Eleme
 const std::set<std::string_view> kVerbatimSections{"Comment", "Comments", "InterpolationScheme",
                                                    "Parametrizations"};
 
-/// Moves to the line $EndName, $ENDName in version 1, and returns the text before it.
+/// Moves to the line $EndName or, in version 1, $ENDName; returns the text before it.
 std::string_view body(ReadContext& reading, std::string_view section) {
   NumberReader& source = reading.source;
   const std::string_view all = source.scanner.all();
@@ -107,8 +107,8 @@ void read_names(ReadContext& reading) {
       name.dimension = number("the dimension of a physical group");
       name.tag = number("the tag of a physical group");
       const std::string_view text = source.scanner.rest_of_line();
-      // as in Gmsh, the second quote ends the name; libMesh marks blocks by the text after it, which is kept
-      // in the section
+      // as in Gmsh, the second quote ends the name; libMesh marks blocks by the text after that quote, which
+      // the section keeps
       const std::size_t end = text.find('"', 1);
       if (!text.starts_with('"') || end == std::string_view::npos) {
         source.fail("the name of the physical group " + std::to_string(name.tag) + " has no quotes",

@@ -63,8 +63,8 @@ void read_element_body(ReadContext& reading, const Element& element, Tags& tags,
   add_cell(reading.mesh, *element.type, nodes);
 }
 
-/// Reads at most `most` elements of a text on all threads, up to the first element that differs from `last`
-/// in type or number of tags. Adds them to `tags`, `ids` and the mesh; returns their number.
+/// Reads at most `most` elements of a text on all threads, up to the first with a fault or with another type
+/// or number of tags than `last`. Adds them to `tags`, `ids` and the mesh; returns their number.
 Index read_alike(ReadContext& reading, const Element& last, Index most, Tags& tags,
                  std::vector<std::int64_t>& ids) {
   const auto tag_count = static_cast<std::size_t>(last.tag_count);
@@ -111,7 +111,7 @@ Index read_alike(ReadContext& reading, const Element& last, Index most, Tags& ta
 /// failure, it waits for more elements to be read one by one. Mixed elements then cost little.
 class Alikes {
  public:
-  /// Reads the next elements by `read_alike`, or reads no elements.
+  /// Calls `read_alike` or does nothing; returns the number of elements read.
   Index read(ReadContext& reading, const Element& last, Index left, Tags& tags,
              std::vector<std::int64_t>& ids) {
     if (pause_ > 0) {

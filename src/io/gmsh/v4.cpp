@@ -51,7 +51,7 @@ int parameters_4(const GmshMetadata& metadata, std::int32_t dimension) {
   return metadata.is_version_40() && dimension == 3 ? 0 : dimension;
 }
 
-/// Reads records as `read_regular_records` if the file is text; returns 0 for a binary file.
+/// Reads records like `read_regular_records` if the file is text; returns 0 for a binary file.
 template <class Read>
 Index read_regular(NumberReader& source, Index count, const Read& read) {
   return source.binary ? 0 : read_regular_records(source.scanner, count, read);
@@ -93,7 +93,7 @@ void read_node_block(ReadContext& reading, const EmptyBlock& head, Index count,
   }
 }
 
-/// Reads the elements of one block after its head.
+/// Appends the elements of one block after its head.
 void read_element_block(ReadContext& reading, const ElementType& type, Index count,
                         std::vector<std::int64_t>& ids) {
   NumberReader& source = reading.source;
@@ -131,7 +131,7 @@ void read_element_block(ReadContext& reading, const ElementType& type, Index cou
   }
 }
 
-/// Reads the head of a section of blocks: the number of blocks, and of nodes or elements in all of them.
+/// Reads the head of a section of blocks; returns the numbers of blocks and of all nodes or elements.
 std::pair<Index, Index> read_head(ReadContext& reading, std::string_view what, std::int64_t text_bytes,
                                   std::int64_t binary_bytes) {
   NumberReader& source = reading.source;

@@ -124,7 +124,7 @@ class CopyWithoutValues {
   const std::set<std::string>& paths_;
   hid_t target_;
   std::string damaged_;
-  std::map<haddr_t, std::string> first_paths_;  // paths in the copy, by address in the old file
+  std::map<haddr_t, std::string> first_paths_;  // path of each object in the copy, by address in the old file
 };
 
 }  // namespace

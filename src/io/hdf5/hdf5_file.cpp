@@ -62,7 +62,7 @@ Handle memory_access(std::string_view bytes) {
   // false: the library makes no file on the disk
   if (H5Pset_fapl_core(access.id(), kCoreStep, false) < 0) throw std::bad_alloc();
   if (!bytes.empty()) {
-    std::string copy(bytes);  // the library copies it again, but takes no pointer to const
+    std::string copy(bytes);  // not `bytes`: the library takes no pointer to const
     if (H5Pset_file_image(access.id(), copy.data(), copy.size()) < 0) throw std::bad_alloc();
   }
   return access;
@@ -120,7 +120,7 @@ File File::change(const std::filesystem::path& path, std::string name) {
 File File::in_memory(std::string_view bytes, std::string name) {
   const Session session;
   const Handle access = memory_access(bytes);
-  // the library takes two files with the same name for one file
+  // the library treats two files with the same name as one file
   static std::uint64_t number = 0;
   const std::string label = fmt::format("meshorder-memory-{}", number++);
   return made_of(bytes.empty() ? H5Fcreate(label.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id())
@@ -143,8 +143,8 @@ Handle File::open_dataset(const std::string& path) const {
 std::vector<std::pair<std::string, std::uint64_t>> File::datasets() const {
   const Session session;
   std::vector<std::pair<std::string, std::uint64_t>> result;
-  // The library visits an object once if the object's count of links is right. Without this check, it would
-  // never finish a damaged group that contains itself.
+  // The library visits an object once if the object's count of links is right. Without this check, the
+  // library would never finish a damaged group that contains itself.
   std::set<haddr_t> groups;
   Visitor<H5O_info_t> visitor([&](hid_t file, const char* name, const H5O_info_t& object) {
     if (object.type == H5O_TYPE_GROUP && !groups.insert(object.addr).second)

@@ -45,7 +45,7 @@ class File {
   static File open(const std::filesystem::path& path, std::string name);
   /// Opens a file on disk to change it. `name` is for messages.
   static File change(const std::filesystem::path& path, std::string name);
-  /// Opens a copy of a file's bytes in memory, to change it; an empty file if there are no bytes.
+  /// Opens a copy of a file's bytes in memory to change it. Makes an empty file if there are no bytes.
   static File in_memory(std::string_view bytes, std::string name);
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
@@ -74,16 +74,16 @@ class File {
   [[nodiscard]] bool has(const std::string& path) const;
   /// Returns the names in a group, ascending; empty if there is no such group.
   [[nodiscard]] std::vector<std::string> names(const std::string& group) const;
-  /// Returns the texts of a dataset. Its rows are texts of any length, or arrays of at most 1,024 characters.
-  /// Removes blanks and zero bytes from the ends of arrays.
+  /// Returns the texts of a dataset. Its rows are texts of any length, or texts of one length, at most 1,024
+  /// bytes. Cuts the latter at the first zero byte and removes blanks at their ends.
   [[nodiscard]] std::vector<std::string> read_texts(const std::string& path) const;
   /// Returns whether there is a dataset that `read_texts` understands.
   [[nodiscard]] bool has_texts(const std::string& path) const;
-  /// Returns a whole number or a text that belongs to a group or a dataset; nullopt if the attribute does not
-  /// exist or is of another kind.
+  /// Returns the whole number (`text_attribute`: the text) in an attribute of a group or a dataset; nullopt
+  /// if the attribute does not exist or is of another kind.
   [[nodiscard]] std::optional<std::int64_t> integer_attribute(const std::string& path,
                                                               const std::string& name) const;
-  /// Returns all whole numbers of an attribute, at most 64; empty if there is no such attribute.
+  /// Returns all whole numbers of an attribute; empty if there is no such attribute or it has more than 64.
   [[nodiscard]] std::vector<std::int64_t> integers_attribute(const std::string& path,
                                                              const std::string& name) const;
   [[nodiscard]] std::optional<std::string> text_attribute(const std::string& path,
@@ -94,8 +94,8 @@ class File {
   /// type and shape.
   void write(const std::string& path, const Values& values, const std::vector<std::uint64_t>& shape);
   void write(const std::string& path, std::span<const Index> values, const std::vector<std::uint64_t>& shape);
-  /// Writes texts to a dataset, as rows of `width` characters, cut or padded at their ends. A dataset
-  /// that exists keeps its attributes.
+  /// Writes texts to a dataset, as rows of `width` bytes, cut or padded with `filling`. A dataset that exists
+  /// keeps its attributes.
   void write_texts(const std::string& path, std::span<const std::string> texts, std::size_t width,
                    char filling = '\0');
   /// Makes a dataset of texts of any length. Its type says ASCII even if there are other characters.
@@ -123,8 +123,8 @@ class File {
 
   /// Returns the bytes of a copy of this file in which the datasets at `paths` keep their types, attributes,
   /// chunks and filters, but have no values. A path that ends in "/" is the path of a group that will get a
-  /// new member. If several of the paths lead to one dataset or group, the copy has one for each path.
-  /// Everything else is copied.
+  /// new member. If several of the paths lead to one dataset or group, each path leads to its own in the
+  /// copy. Everything else is copied.
   [[nodiscard]] std::string without_values(const std::set<std::string>& paths) const;
   /// Returns the bytes of a file in memory.
   [[nodiscard]] std::string bytes() const;
@@ -132,7 +132,7 @@ class File {
   void close();
 
  private:
-  /// Takes an open file of the library; throws if it could not be opened.
+  /// Returns a File for an open file of the library; throws InputError if `file` is negative.
   static File made_of(hid_t file, std::string name, std::string_view what, const char* remedy);
   /// Returns an unused path beside this path.
   [[nodiscard]] std::string free_path(const std::string& path) const;

@@ -142,7 +142,7 @@ MESHORDER_HDF5_VARIABLE(H5T_STD_I8LE_g);
 
 namespace meshorder::hdf5 {
 
-/// Loads HDF5 in builds that load it on demand. Throws Unavailable if it is not found.
+/// Loads HDF5 in builds that load it on demand. Throws Unavailable if the library is not found.
 inline void load_library() {
 #ifdef MESHORDER_HDF5_FILE
   kHdf5.load();

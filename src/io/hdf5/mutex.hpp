@@ -8,7 +8,7 @@ namespace meshorder::hdf5 {
 
 using LibraryLock = std::unique_lock<std::recursive_mutex>;
 
-/// Function that the first thread calls once, just before entering the library. Set it before that.
+/// Function that is called once, just before a thread first enters the library. Set it earlier.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): as the library has its state
 inline void (*at_first_entry)() = nullptr;
 
@@ -21,8 +21,8 @@ inline void (*at_first_entry)() = nullptr;
   return lock;
 }
 
-/// Stops libhdf5 from closing files at the end of the process: there it crashes if it again tries to close a
-/// file that it could not close. For programs, not libraries. Call it before any use of libhdf5.
+/// Stops libhdf5 from closing files at the end of the process: it would crash there when it tries again to
+/// close a file that it could not close. For programs, not libraries. Call it before any use of libhdf5.
 void close_nothing_at_exit();
 
 }  // namespace meshorder::hdf5

@@ -15,7 +15,7 @@ std::array<hid_t, 10> native_types() {
 }
 
 std::size_t alternative_of(hid_t type) {
-  // only these: the library does not check bit fields of other types, which a damaged file may put anywhere
+  // only these: in damaged files, bit fields of other types may be anywhere, which the library does not check
   constexpr bool kIsBig = std::endian::native == std::endian::big;
   const std::array<hid_t, 10> known = native_types();
   const auto is_other_order_of = [&](hid_t native) {

@@ -21,7 +21,7 @@ std::array<hid_t, 10> native_types();
 /// Returns the alternative of Values for the usual number types, in either byte order; 10 for all others.
 std::size_t alternative_of(hid_t type);
 
-/// Makes a dataspace of this shape; an empty shape makes that of a single value.
+/// Returns a dataspace of this shape; that of a single value if the shape is empty.
 Handle space_of(const std::vector<std::uint64_t>& shape);
 
 /// Returns an upper bound on the bytes of a dataset's values. In a dataset of chunks, which filters may have
@@ -31,14 +31,14 @@ std::uint64_t most_bytes(hid_t dataset);
 /// Returns whether the values of a dataset are in external files, or in other datasets (a virtual dataset).
 bool has_values_elsewhere(hid_t dataset);
 
-/// Makes a dataset store no times of change: the same mesh then always gives the same bytes.
+/// Makes new datasets store no times of change: the same mesh then always gives the same bytes.
 void forget_times(const Handle& creation);
 
 /// Returns the names in a group, sorted by name or by the creation of links. Does not use the library's
 /// sorting, which trusts the size that a damaged group claims.
 std::vector<std::string> names_in(hid_t group, H5_index_t index = H5_INDEX_NAME);
 
-/// Copies all attributes to another object, except references. Returns false if an attribute is damaged; it
+/// Copies all attributes to another object, except references. Returns false if an attribute is damaged, and
 /// then copies nothing, because iterating over damaged attributes crashes the library.
 bool copy_attributes(hid_t from, hid_t to);
 

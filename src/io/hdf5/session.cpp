@@ -25,8 +25,8 @@ struct Faults {
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): libhdf5 has one state, too
 Faults faults;
 
-/// Returns the system's message for a failed call from the library's description, which has several lines; an
-/// empty text if there is none.
+/// Returns the system's message within the library's description of a failed call; an empty text if there is
+/// none.
 std::string_view system_words(std::string_view cause) {
   constexpr std::string_view kBefore = "error message = '";
   const std::size_t at = cause.find(kBefore);

@@ -8,9 +8,9 @@
 
 namespace meshorder::hdf5 {
 
-/// While an object of this class lives, other threads cannot enter libhdf5, and the library does not print
-/// errors or load plug-ins, which a file can request by the number of a filter. Records calls that fail, even
-/// if the library, or a library on top of it, ignores their result. May be nested.
+/// A use of libhdf5. While it lives, no other thread can enter libhdf5, and the library prints no errors and
+/// loads no plug-ins, which a file can request by the number of a filter. Records calls that fail, even if
+/// the library, or a library on top of it, ignores their result. May be nested.
 class Session {
  public:
   Session();
@@ -20,7 +20,7 @@ class Session {
   Session& operator=(const Session&) = delete;
   Session& operator=(Session&&) = delete;
 
-  /// Records failures again, after a library on top of libhdf5 has turned that off.
+  /// Makes the session record failures again after a library on top of libhdf5 has stopped that.
   void watch() const;
 
   /// Throws InputError if the system had no memory for a call or could not read or write since the outermost
@@ -48,8 +48,8 @@ auto read_whole(const std::string& file, const Work& work) {
   return result;
 }
 
-/// While an object of this class lives, the session does not record calls that fail. Use it for questions
-/// that a failed call answers, for example whether a link leads to an object.
+/// A pause in a session: while it lives, calls that fail are not recorded. Use it for questions that a failed
+/// call answers, for example whether a link leads to an object.
 class Unwatched {
  public:
   Unwatched() {

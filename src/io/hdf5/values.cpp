@@ -17,8 +17,7 @@
 namespace meshorder::hdf5 {
 namespace {
 
-/// Returns the name of a filter of the dataset that this library lacks; an empty text if the library has all
-/// of them.
+/// Returns the name of a filter of the dataset that this library lacks; empty if the library has all filters.
 std::string lacking_filter(hid_t creation) {
   const int filters = H5Pget_nfilters(creation);
   for (int i = 0; i < filters; ++i) {

@@ -2,8 +2,8 @@
 #pragma once
 
 // Declarations shared by the formats of matrices and graphs. A square matrix is stored as a mesh: its rows
-// are vertices, all at the origin; its entries are cells in the order of the file: lines from row to column,
-// and vertices on the diagonal. Values are the array "value" on cells. An edge of a graph is a line.
+// are vertices, all at the origin; its entries are cells in the order of the file: vertex cells on the
+// diagonal, else lines from row to column. Values are the array "value" on cells. A graph's edge is a line.
 
 #include "io/format.hpp"
 
@@ -18,7 +18,7 @@ struct RowPoints {
   int dimension = 3;          ///< numbers in each row of the file, 2 or 3
 };
 
-/// Reads the points of `rows` rows. The file may be
+/// Reads `rows` points. The file may be
 /// - a NumPy array of numbers, rows × 2 or rows × 3;
 /// - a dense `array` of Matrix Market;
 /// - text with two or three numbers in a line, separated by blanks or commas; comments begin at `#` or `%`.
@@ -37,14 +37,14 @@ inline constexpr std::string_view kSize = "size";      ///< array on vertices: s
 /// Returns whether a cell is an entry: a line or a vertex.
 bool is_entry(const Mesh& mesh, Shape shape, int vertices);
 
-/// Claims memory for the vertices, because a file may hold as little as a line end for each. Throws
-/// InputError if that exceeds the limit.
+/// Claims memory for the vertices, because a file may have a byte or less for each. Throws InputError if the
+/// memory exceeds the limit.
 void claim_vertices(Index count);
 
 /// Returns the array of that name if it holds numbers for every vertex or cell; null otherwise.
 const DataArray* dense_array(const Mesh& mesh, std::string_view name, Association association);
 
-/// Returns whether an array holds whole numbers that fit 64 bits with a sign.
+/// Returns whether an array has a type of integers and all values fit std::int64_t.
 bool is_whole(const DataArray& array);
 
 /// Returns the value at position `at` of an array of numbers.

@@ -61,7 +61,7 @@ constexpr std::string_view kBanner = "%%MatrixMarket";
 /// Data of a file beyond the matrix.
 struct MatrixMetadata final : StoredMatrix {
   Symmetry stored_as = Symmetry::general;
-  std::string comments;  ///< the lines after the first
+  std::string comments;  ///< the comment lines after the first line
 
   [[nodiscard]] std::vector<std::string> contents() const override {
     std::vector<std::string> result;
@@ -201,7 +201,7 @@ const MatrixMetadata* metadata_of(const Mesh& mesh) {
   return dynamic_cast<const MatrixMetadata*>(mesh.format_metadata.get());
 }
 
-/// Returns whether no two lines join the same vertices.
+/// Returns whether no two cells join the same vertices.
 bool joins_once(const Mesh& mesh) {
   std::vector<std::pair<Index, Index>> ends;
   ends.reserve(mesh.cells.shapes.size());
@@ -226,7 +226,7 @@ const DataArray* values_of(const Mesh& mesh) {
   return values != nullptr && values->components <= 2 ? values : nullptr;
 }
 
-/// Returns the symmetry with which a mesh with these values is written.
+/// Returns the symmetry to write for a mesh with these values.
 Symmetry symmetry_of(const Mesh& mesh, const DataArray* values) {
   if (const MatrixMetadata* const own = metadata_of(mesh)) return own->stored_as;
   const bool may_be = values == nullptr || values->name == kWeight;

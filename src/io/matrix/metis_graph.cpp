@@ -39,7 +39,7 @@ struct GraphMetadata final : StoredMatrix {
   }
 };
 
-/// A neighbour of a vertex. `value` is the weight of the edge in the reader, its cell in the writer.
+/// A neighbour of a vertex. `value`: in the reader, the edge's weight; in the writer, the edge's cell.
 struct Neighbour {
   Index vertex;
   std::int64_t value;
@@ -75,7 +75,7 @@ class GraphReader {
   }
 
  private:
-  /// Takes the lines that are comments; returns false at the end of the file.
+  /// Stores the next lines that are comments; returns false at the end of the file.
   bool skip_comments() {
     while (in_.bytes_left() > 0 && trimmed(in_.peek_line()).starts_with('%')) {
       metadata_->comments.append(in_.raw_line()) += '\n';
@@ -215,7 +215,7 @@ class GraphReader {
     return {std::upper_bound(all.begin(), all.end(), Neighbour{v, 0}, comes_before), all.end()};
   }
 
-  /// Fails at the first edge that one of its vertices does not name.
+  /// Fails at the first edge whose other vertex does not name it with the same weight.
   [[noreturn]] void fail_one_sided() {
     Index v = 0;
     const auto is_one_sided = [&](const Neighbour& edge) { return !is_named_back(v, edge); };
@@ -287,7 +287,7 @@ Mesh read_graph(const FilePath& path, Notes& /*notes*/) { return GraphReader(pat
 
 // ---- writing
 
-/// The neighbours of all vertices, ascending, with the cells that join them. Counts loops and repeated edges.
+/// Each vertex's neighbours, ascending, with the cells that join them; the numbers of loops and repeats.
 struct Adjacency {
   explicit Adjacency(const Mesh& mesh) {
     offsets.assign(mesh.points.size() + 1, 0);
@@ -336,7 +336,7 @@ struct Adjacency {
   }
 };
 
-/// Returns the array if METIS takes its values: whole numbers of at least `least`; null otherwise.
+/// Returns the array if METIS accepts its values: integers of at least `least`; null otherwise.
 const DataArray* weights(const Mesh& mesh, std::string_view name, Association association,
                          std::int64_t least) {
   const DataArray* const array = dense_array(mesh, name, association);

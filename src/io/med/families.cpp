@@ -97,11 +97,11 @@ void read_families_of(Reading& reading, Association association) {
   }
 }
 
-/// The family and the groups of some vertices or cells. The groups are a chain with one group in each link: a
-/// vertex or cell may be in thousands of groups.
+/// The family and the groups of some vertices or cells. The groups are a chain, one in each link, as an item
+/// may be in thousands of groups.
 struct Combination {
   std::int64_t family;
-  std::size_t without_last;       ///< index of the combination without its last group
+  std::size_t without_last;       ///< index of the combination without `last_group`
   const std::string* last_group;  ///< null: no groups
 };
 
@@ -130,7 +130,7 @@ class FamilyWriter {
   }
 
  private:
-  /// Starts with the family of each item in the MED file that the mesh came from, and no groups.
+  /// Gives each item its family in the MED file that the mesh came from, and no groups.
   void start() {
     const MedLayout& layout = writing_.layout;
     const Mesh& mesh = writing_.mesh;
@@ -154,7 +154,7 @@ class FamilyWriter {
     }
   }
 
-  /// Adds a group that these items belong to.
+  /// Adds a group with these members.
   void add_group(std::string name, const std::vector<Index>& members) {
     const std::string& group = groups_.emplace_back(std::move(name));
     std::unordered_map<std::size_t, std::size_t> with_group;
@@ -166,7 +166,7 @@ class FamilyWriter {
     }
   }
 
-  /// Returns the old family of the items of a combination, with the groups that these items have gained.
+  /// Returns the groups of a combination, with the number of its old family.
   [[nodiscard]] Family family_of(std::size_t combination) const {
     const Combination* link = &combinations_[combination];
     Family result{link->family};
@@ -220,8 +220,9 @@ class FamilyWriter {
     return result;
   }
 
-  /// Returns the number of a family with the groups of `wanted`: `wanted.number` if the file's family of that
-  /// number has the same groups, else that of another family of the file; 0 for no groups; or a new number.
+  /// Returns the number of a family with the groups of `wanted`: `wanted.number` if that family of the file
+  /// has these groups (a missing family has none), else that of another such family; 0 for no groups; or a
+  /// new number.
   std::int64_t number_for(const Family& wanted) {
     std::vector<std::string> groups = wanted.groups;
     std::sort(groups.begin(), groups.end());
@@ -269,8 +270,8 @@ class FamilyWriter {
   std::vector<std::size_t> of_item_;  // the combination of each vertex or cell
   std::deque<std::string> groups_;
   std::map<std::int64_t, std::vector<std::string>> groups_of_;  // groups of each family, by its number
-  std::map<std::vector<std::string>, std::int64_t> number_of_;  // first family with these groups
-  std::int64_t last_ = 0;                                       // number farthest from 0
+  std::map<std::vector<std::string>, std::int64_t> number_of_;  // first family with the groups
+  std::int64_t last_ = 0;                                       // farthest from 0 within 32 bits
 };
 
 }  // namespace

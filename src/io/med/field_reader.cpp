@@ -24,7 +24,7 @@ struct FieldInfo {
   std::string path;
   std::size_t components = 1;
   std::vector<std::string> component_names;
-  std::vector<std::string> steps;  ///< names of groups, in the order of their numbers
+  std::vector<std::string> steps;  ///< names of their groups, ordered by number
 };
 
 /// Splits a text into `count` names of 16 characters; returns no names if all are blank.
@@ -199,7 +199,7 @@ class FieldReader {
   std::vector<Gathered> gathered_;
 };
 
-/// Returns a field; the field has no steps if it does not belong to this mesh.
+/// Returns a field, without steps if the field belongs to another mesh.
 FieldInfo field_of(const Reading& reading, const std::string& name) {
   const hdf5::File& file = reading.file;
   FieldInfo field{.name = name, .path = "/CHA/" + name, .component_names = {}, .steps = {}};

@@ -19,7 +19,7 @@
 namespace meshorder::med {
 namespace {
 
-/// A type of values of new fields.
+/// The type of a new field's values.
 struct ValueType {
   std::int64_t number;      ///< attribute TYP of a field
   std::size_t alternative;  ///< index of an alternative of Values

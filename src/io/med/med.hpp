@@ -7,10 +7,9 @@
 // attributes that its library writes. The node orders of cells are those of Gmsh's writer of MED.
 //
 // In a Mesh, the cells of a type are a block of cells. Groups are sets of vertices and of cells, and the
-// numbers of families are an array `kLabel`. A field becomes an array of the same name, or arrays "NAME step
-// K" if it has several steps. Its values at the nodes of cells and at Gauss points are arrays "NAME at nodes
-// of TE4" and "NAME at Gauss points of TE4", whose rows have the components of all points, one point after
-// another.
+// family numbers are an array `kLabel`. A field becomes an array of the same name, or arrays "NAME step K" if
+// it has several steps. The values at the nodes of cells and at Gauss points are arrays "NAME at nodes of
+// TE4" and "NAME at Gauss points of TE4"; a row has the components of all points, one point after another.
 
 #include "io/format.hpp"
 #include "io/hdf5/hdf5_file.hpp"
@@ -32,8 +31,8 @@
 namespace meshorder::med {
 
 inline constexpr std::string_view kNoProfile = "MED_NO_PROFILE_INTERNAL";
-inline constexpr std::string_view kNames = "name";                   ///< name of the array of names of items
-inline constexpr std::string_view kGlobalNumbers = "global number";  ///< name of the array of the numbers GLB
+inline constexpr std::string_view kNames = "name";                   ///< name of the array with item names
+inline constexpr std::string_view kGlobalNumbers = "global number";  ///< name of the array with GLB numbers
 /// Name of the array of family numbers if the file has a field named `kLabel`.
 inline constexpr std::string_view kFamilies = "family";
 inline constexpr std::size_t kLongestName = 64;   ///< characters in the name of a field, profile or family
@@ -55,8 +54,7 @@ std::span<const GeometryType> geometry_types();
 const GeometryType* geometry_type(std::string_view name);
 /// Returns the type of these cells, null if there is none.
 const GeometryType* geometry_type(Shape shape, int nodes);
-/// Returns, for each node of a cell of the file, its position in the cell of a Mesh; empty if both orders
-/// agree.
+/// Returns, for each node of the file's cell, the position in a Mesh's cell; empty if both orders agree.
 std::span<const int> mesh_order(const GeometryType& type);
 
 // ---- contents of a file besides the mesh
@@ -87,7 +85,7 @@ struct Equivalence {
   std::vector<Index> members = {};     ///< vertices or cells of the mesh, two for each pair
 };
 
-/// Whether the file has numbers and families for vertices or for the cells of a type.
+/// What the file has for the vertices or for the cells of a type.
 struct Items {
   bool has_numbers = false;
   bool has_families = false;
@@ -107,12 +105,12 @@ Range range_in(const Ranges& ranges, const GeometryType* type);
 struct MedLayout final : FormatMetadata {
   std::shared_ptr<const std::string> file;           ///< bytes without the values that depend on the mesh
   std::string mesh;                                  ///< name of the mesh
-  std::string step;                                  ///< name of the group of the mesh's only step
+  std::string step;                                  ///< name of the group of the only step
   bool is_made = false;                              ///< made by `new_layout`
   bool in_mesh_order = false;                        ///< nodes of cells are in the order of a Mesh
   int axes = 3;                                      ///< coordinates of a point
   std::map<const GeometryType*, Items> items;        ///< by type; null: vertices
-  std::string families_array = std::string(kLabel);  ///< array of the mesh with the numbers of families
+  std::string families_array = std::string(kLabel);  ///< mesh's array with the family numbers
   std::array<std::vector<Family>, 2> families;       ///< by association
   std::vector<Piece> pieces;
   std::vector<Equivalence> equivalences;
@@ -124,8 +122,8 @@ struct MedLayout final : FormatMetadata {
   /// Returns the path of the group of the vertices (null) or of the cells of a type.
   [[nodiscard]] std::string path_of(const GeometryType* type) const;
   [[nodiscard]] std::string families_path(Association association) const;
-  /// Returns, for each point of a cell in the file, its position in the rows of an array; empty if both
-  /// orders agree.
+  /// Returns, for each point of a cell in the file, the position in an array's row; empty if both orders
+  /// agree.
   [[nodiscard]] std::span<const int> order_of_points(const Piece& piece) const;
 
   [[nodiscard]] std::vector<std::string> contents() const override { return words; }
@@ -154,10 +152,9 @@ struct Reading {
   /// Throws InputError for a fault at a group or a dataset.
   [[noreturn]] void fail(const std::string& path, const std::string& what,
                          const std::string& remedy = "the file may be damaged") const;
-  /// Adds an array under a name that no other array has. Sorts its rows by their vertices or cells.
-  /// Returns that name.
+  /// Adds an array, its rows sorted by vertex or cell, under an unused name. Returns that name.
   std::string add_array(DataArray array);
-  /// Marks a dataset that the writer writes.
+  /// Marks a dataset not to keep verbatim.
   void take(const std::string& path) { taken.insert(hdf5::normal_path(path)); }
 
   hdf5::File file;
@@ -187,8 +184,8 @@ struct Writing {
 
   /// Writes numbers of `rows` items to a dataset and sets its attributes.
   void put(const std::string& path, const Values& values, Index rows);
-  /// Writes whole numbers with 32 bits, or with 64 bits if the dataset already has wider numbers or a number
-  /// does not fit.
+  /// Writes whole numbers with 32 bits, or with 64 bits if the dataset already has these or a number needs
+  /// them.
   void put_integers(const std::string& path, std::vector<std::int64_t> values);
 };
 
@@ -196,7 +193,7 @@ struct Writing {
 using Numbers = std::initializer_list<std::pair<const char*, std::int64_t>>;
 void set_attributes(hdf5::File& file, const std::string& path, Numbers numbers);
 
-/// Writes the families and returns their numbers for each vertex or cell; empty if all are 0.
+/// Writes new families and returns the number for each vertex or cell; empty if all are 0.
 std::vector<std::int64_t> write_families(Writing& writing, Association association);
 void write_fields(Writing& writing);
 

@@ -127,7 +127,7 @@ void refuse_unknown_kinds(const Reading& reading) {
   }
 }
 
-/// Returns the length of a dataset in rows of `width` values.
+/// Returns the number of rows of `width` values in a dataset.
 Index row_count_of(const Reading& reading, const std::string& path, std::size_t width) {
   const std::uint64_t size = reading.file.info(path).size();
   if (size % width != 0) {
@@ -164,7 +164,7 @@ void read_points(Reading& reading) {
   });
 }
 
-/// Throws for a group of cells that are not supported.
+/// Throws for a group of unsupported cells.
 [[noreturn]] void fail_at_type(const Reading& reading, const std::string& path, const std::string& name) {
   if (name == "POG" || name == "POG2") reading.fail(path, "has polygons", std::string(kCutCells));
   if (name == "POE") reading.fail(path, "has polyhedra", std::string(kCutCells));
@@ -175,7 +175,7 @@ void read_points(Reading& reading) {
       "and second order are supported");
 }
 
-/// Reads the nodes of the cells of a type, in the order of the file.
+/// Appends the cells of a type, with the nodes in the file's order.
 void read_cells(Reading& reading, const GeometryType& type) {
   const std::string group = reading.layout->path_of(&type);
   const std::string path = group + "/NOD";
@@ -231,7 +231,7 @@ void turn(std::span<Index> cell, std::span<const int> order) {
 }
 
 /// Puts the nodes of all cells in the order of a Mesh. Some programs write that order into the file: if
-/// nearly all volumes are positive in the order of the file, the nodes stay.
+/// nearly all volumes are positive in the file's order, the nodes stay.
 void turn_cells(Reading& reading) {
   Mesh& mesh = reading.mesh;
   WedgeVote vote(mesh.points);
@@ -296,7 +296,7 @@ void append(DataArray& array, Values values, Index first) {
   }
 }
 
-/// Reads the data of vertices, or of cells of each type, besides coordinates and nodes.
+/// Reads the data, besides coordinates and nodes, of vertices or of cells of each type.
 class ItemReader {
  public:
   ItemReader(Reading& reading, Association association) : reading_(reading), association_(association) {}

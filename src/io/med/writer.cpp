@@ -18,12 +18,12 @@
 #include <type_traits>
 #include <variant>
 
-// Writes a file: its contents besides the mesh, then the mesh, its numbers and names.
+// Writes a file: the kept bytes, then points, cells, fields and equivalences.
 
 namespace meshorder::med {
 namespace {
 
-/// Name of the group of the only step, in a mesh that does not change over time.
+/// Name of the only step's group in a mesh that does not change over time.
 constexpr std::string_view kStep = "-0000000000000000001-0000000000000000001";
 constexpr std::size_t kInt32Alternative = 6;
 constexpr std::size_t kInt64Alternative = 8;
@@ -89,13 +89,13 @@ std::vector<Index> node_columns(const Writing& writing, const GeometryType& type
   return columns;
 }
 
-/// Returns the part of a list with a number for each vertex or each cell.
+/// Returns the numbers of the vertices or cells in a range.
 std::vector<std::int64_t> part_of(const std::vector<std::int64_t>& numbers, const Range& range) {
   const auto begin = numbers.begin() + range.first;
   return {begin, begin + range.count};
 }
 
-/// An array, null if the mesh has none, and the row of each vertex or cell in it.
+/// An array (null: not in the mesh) and its row for each vertex or cell.
 struct RowsOfArray {
   const DataArray* array = nullptr;
   std::vector<Index> table = {};
@@ -104,7 +104,7 @@ struct RowsOfArray {
   [[nodiscard]] Index operator[](Index item) const { return table.empty() ? item : table[item]; }
 };
 
-/// Writes the data of vertices, or of cells, besides coordinates and nodes.
+/// Writes the data, besides coordinates and nodes, of vertices or of cells.
 class ItemWriter {
  public:
   ItemWriter(Writing& writing, Association association)
@@ -135,7 +135,7 @@ class ItemWriter {
   }
 
  private:
-  /// Marks an array as written.
+  /// Marks an array as written; returns its rows.
   RowsOfArray placed(const DataArray* array) {
     writing_.placed.insert(array);
     return {array, rows_by_item(*array, item_count(writing_.mesh, association_))};

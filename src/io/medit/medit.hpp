@@ -47,7 +47,7 @@ inline constexpr std::array kCellKinds{
 };
 inline constexpr std::size_t kLinearKinds = 7;
 
-/// The target of positions in a list or table: vertices, or the cells of one section.
+/// What the positions in a section refer to: vertices, or cells of this shape.
 using Target = std::optional<Shape>;  // nullopt: vertices
 
 /// How a section refers to vertices or cells. Sections are read in the order of these forms.
@@ -58,9 +58,9 @@ enum class Form : std::uint8_t {
   rows    ///< lines of several positions
 };
 
-/// A section that refers to vertices or cells by their positions. Each column of a line has a letter: v for a
-/// vertex; e, t, q or k for a cell in Edges, Triangles, Quadrilaterals or Tetrahedra; '.' for a number that
-/// is kept: it refers to normals, tangents or a geometry in another file.
+/// A section that refers to vertices or cells by their positions. Each column (of a table, only the first)
+/// has a letter: v for a vertex; e, t, q or k for a cell in Edges, Triangles, Quadrilaterals or Tetrahedra;
+/// '.' for a number that is kept, for example that of a normal.
 struct ReferenceKind {
   std::string_view keyword;
   Form form;
@@ -107,7 +107,7 @@ inline constexpr std::array kReferenceKinds{
     ReferenceKind{"VertexOnSupportHexahedron", Form::table, "v"},
     // BAMG's: 3, a triangle of the domain, orientation, reference
     ReferenceKind{"SubDomainFromMesh", Form::rows, ".t.."},
-    // in a file of geometry: 2, an edge, …, as in the next line
+    // in a geometry: 2, an edge, …: the columns of the next line
     ReferenceKind{"SubDomain", Form::rows, ".t.."},
     ReferenceKind{"SubDomainFromGeom", Form::rows, ".e.."},
     ReferenceKind{"TangentAtEdges", Form::rows, "e..."},
@@ -121,13 +121,13 @@ inline constexpr std::array kReferenceKinds{
     ReferenceKind{"PeriodicEdges", Form::rows, "ee"},
     ReferenceKind{"PeriodicTriangles", Form::rows, "tt"},
     ReferenceKind{"PeriodicQuadrilaterals", Form::rows, "qq"},
-    // these have a cell, the position of a vertex in it, and a tangent or normal
+    // lines of a cell, the position of a vertex in this cell, and a tangent or normal
     ReferenceKind{"TangentAtEdgeVertices", Form::rows, "e.."},
     ReferenceKind{"NormalAtTriangleVertices", Form::rows, "t.."},
     ReferenceKind{"NormalAtQuadrilateralVertices", Form::rows, "q.."},
 };
 
-/// A section of BAMG's mesh sizes at all vertices, without a count. It is read as an array of the same name.
+/// A section, without a count, of BAMG's mesh sizes at all vertices; read as an array of the same name.
 struct SizeKind {
   std::string_view keyword;
   Index components;
@@ -156,7 +156,7 @@ struct MeditMetadata final : FormatMetadata {
   std::vector<VerbatimSection> sections;  ///< sections that do not depend on the order
   std::vector<Rows> rows;
   std::vector<std::size_t> empty_sections;  ///< kinds of cells whose section is empty
-  /// For kinds whose node order the file gives: the position in the file of each node in VTK's order.
+  /// For kinds whose node order the file gives: at index k, the position in the file of VTK's node k.
   std::map<std::size_t, std::vector<int>> places;
 
   [[nodiscard]] std::vector<std::string> contents() const override;
@@ -177,7 +177,7 @@ std::size_t kind_of_ordering(std::string_view keyword);
 /// edge. In triangles, tetrahedra and prisms, the coordinates are barycentric, as in sections "…Ordering".
 std::vector<std::vector<int>> reference_nodes(Shape shape);
 
-/// Returns the kind of cells that positions of a target refer to: linear cells if the mesh has any, else
+/// Returns the kind of cells to which positions of a target refer: linear cells if the mesh has any, else
 /// cells of second order; the number of kinds if the mesh has neither. `counts`: number of cells of each
 /// kind.
 std::size_t counted_kind(Shape target, std::span<const Index> counts);

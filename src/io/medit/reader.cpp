@@ -136,8 +136,7 @@ class Reader {
     return true;
   }
 
-  /// Returns whether a section may come before the dimension, because the section does not depend on the
-  /// dimension.
+  /// Returns whether a section may precede Dimension: whether its length does not depend on the dimension.
   static bool comes_before_dimension(std::string_view keyword) {
     const std::size_t kind = find_kind(kPlainKinds, keyword);
     return kind < kPlainKinds.size() && kPlainKinds[kind].words_per_dimension == 0;
@@ -212,7 +211,7 @@ class Reader {
     }
   }
 
-  /// Reads the order of nodes in a kind of cells, given by their coordinates in the reference cell.
+  /// Reads the node order of a kind of cells: a list of the nodes' coordinates in the reference cell.
   void read_ordering(std::size_t kind) {
     const auto nodes = reference_nodes(kCellKinds[kind].shape);
     const Index count = in_.count(what_count(), 2);
@@ -273,7 +272,7 @@ class Reader {
   // ---- sections that refer to vertices or cells
 
   /// Skips a section that is read later. Each row has `words` words; if `words` is 0, each row has as many
-  /// words as the first line.
+  /// words as the line of the first row.
   void skip_rows(int words) {
     const Index count = in_.count(what_count(), 2 * std::max(words, 1));
     if (words == 0) words = words_of_line();
@@ -283,7 +282,7 @@ class Reader {
     }
   }
 
-  /// Counts the words in the line of the next word.
+  /// Returns the number of words in the next word's line; 1 at the end of the file.
   int words_of_line() { return in_.at_end() ? 1 : in_.words_in_line(); }
 
   void read_pending() {
@@ -306,7 +305,7 @@ class Reader {
     last_keyword_ = keyword;
   }
 
-  /// Returns the first vertex or cell that positions of a target refer to, and the number of these.
+  /// Returns the first vertex or cell of a target, and their number. Fails if cells are `needed` but absent.
   std::pair<Index, Index> range_of(const Target& target, Index needed) {
     if (!target) return {0, mesh_.vertex_count()};
     const std::size_t kind = counted_kind(*target, counts_);
@@ -430,7 +429,7 @@ class Reader {
     note_missing_line_end(in_, kComment, notes_);
   }
 
-  /// Puts the nodes of second-order cells from the order that the file gives into VTK's.
+  /// Puts the nodes of second-order cells into VTK's order if the file gives their order.
   void arrange_nodes() {
     for (std::size_t kind = kLinearKinds; kind < kCellKinds.size(); ++kind) {
       if (counts_[kind] == 0) continue;

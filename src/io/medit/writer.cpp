@@ -17,7 +17,7 @@
 namespace meshorder::medit {
 namespace {
 
-/// The order of the sections, the cells of each and the position of each cell.
+/// The sections of cells: their order, their cells, and each cell's position.
 struct SectionOrder {
   std::array<std::vector<Index>, kCellKinds.size()> cells;
   std::array<Index, kCellKinds.size()> counts{};
@@ -120,7 +120,7 @@ Index position_in(const WriteContext& from, const Target& target, Index item) {
   return kind_of(cells.shapes[item], cells.vertex_count(item)) == kind ? from.layout.place[item] : -1;
 }
 
-/// Returns the kind of section of that form and name that all `items` fit, or nullptr.
+/// Returns the kind of section of that form and name if all `items` fit it, else nullptr.
 const ReferenceKind* fitting_kind(Form form, const WriteContext& from, std::string_view name,
                                   Association association, const std::vector<Index>& items) {
   const auto found = std::ranges::find_if(kReferenceKinds, [&](const ReferenceKind& kind) {
@@ -180,8 +180,7 @@ void write_section_rows(OutputFile& out, const WriteContext& from, const MeditMe
   }
 }
 
-/// Writes an array on all vertices as the section of the same name; returns false if there is no such
-/// section.
+/// Writes an array on all vertices as the section of the same name; returns false if the array fits none.
 bool write_sizes(OutputFile& out, const DataArray& array) {
   const bool known = std::any_of(kSizeKinds.begin(), kSizeKinds.end(), [&](const SizeKind& kind) {
     return kind.keyword == array.name && kind.components == array.components;
@@ -197,7 +196,8 @@ bool write_sizes(OutputFile& out, const DataArray& array) {
   return true;
 }
 
-/// Writes an array as the table of the same name, if the mesh came from this format.
+/// Writes an array as the section of the same name if the mesh came from this format and the array fits;
+/// else notes it.
 void write_array(OutputFile& out, const WriteContext& from, const DataArray& array, Notes& notes) {
   const ReferenceKind* kind = nullptr;
   const bool numbers = !are_texts(array.values);

@@ -25,7 +25,7 @@ constexpr std::size_t kLargeFields = 4;
 
 /// Returns the end of the line that begins there, its line end included.
 std::size_t end_of_line(std::string_view text, std::size_t begin) {
-  constexpr std::size_t kUsual = 128;  // a text without line feeds is not searched to its end for each line
+  constexpr std::size_t kUsual = 128;  // limits the search: a text may have no line feeds
   const std::string_view ahead = text.substr(begin, kUsual);
   const std::size_t feed = ahead.find('\n');
   std::string_view line = ahead.substr(0, feed);
@@ -301,7 +301,7 @@ void append_card(std::string& out, std::string_view name, const std::vector<std:
 
 namespace {
 
-/// Removes the letter and the leading zeros of an exponent, and a zero before the point; adds a point.
+/// Removes the letter and leading zeros of an exponent, and a zero before the point; adds a missing point.
 std::string as_field(std::string_view number) {
   const std::size_t e = number.find('e');
   std::string mantissa(number.substr(0, e));
@@ -332,7 +332,7 @@ std::string shortest(double value) {
 RealText real_text(double value) {
   std::string text = shortest(value);
   double rounded = value;
-  // one more digit would reproduce the value itself, whose text is too long
+  // 17 significant digits give the value itself, whose text is too long
   for (int digits = 15; digits > 0 && text.size() > kLargeWidth; --digits) {
     std::array<char, 40> buffer{};
     char* const begin = buffer.data();

@@ -42,8 +42,8 @@ class Cards {
   bool is_orphan_ = false;
 };
 
-/// Divides a text of whole lines, or a part of it, into parts of `bytes` or more that contain whole cards.
-/// Each part begins with a line that begins with a letter and thus a card. O(parts) if most lines do so.
+/// Divides `whole`, lines of `text`, into parts of whole cards, of at least `bytes` but for the last. Parts
+/// after the first begin with a letter, thus with a card. O(parts) if most lines begin with a letter.
 std::vector<Piece> parts_of_cards(std::string_view text, Piece whole, std::size_t bytes);
 
 /// A field of a card.
@@ -54,8 +54,8 @@ struct Field {
   std::string_view text;   ///< without blanks around it
 };
 
-/// The fields of a card. Field 0 is the name. Then each line has 8 fields, or 4 if its fields are large. The
-/// numbering of fields goes on from line to line.
+/// The fields of a card. Field 0 is the name; the others are numbered on from line to line, with 8 on each
+/// line, or 4 if they are large.
 struct CardFields {
   std::vector<Field> fields;
   bool is_large = false;     ///< whether the first line has large fields
@@ -91,7 +91,7 @@ struct Edit {
   std::int64_t number = 0;
 };
 
-/// Appends a card with new numbers in the fields of `edits` (ascending), in the columns of the old numbers.
+/// Appends a card with the numbers of `edits` (ascending by field), in the columns of the old numbers.
 /// Returns false if a number does not fit its field.
 bool append_edited(std::string& out, std::string_view card, const CardFields& fields,
                    const std::vector<Edit>& edits);

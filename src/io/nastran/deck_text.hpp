@@ -57,7 +57,7 @@ class DeckText {
   std::string text_;
   Piece bulk_;
   std::vector<Origin> origins_;
-  /// The byte of the last call of `location`; npos before the first call.
+  /// The byte and line of the last call of `location`; npos before the first.
   struct Counted {
     std::size_t byte = std::string::npos;
     std::int64_t line = 0;

@@ -48,7 +48,7 @@ class CardWriter {
   /// Returns the text made since the last call.
   [[nodiscard]] std::string take_text() { return std::exchange(out_, {}); }
 
-  /// Adds a text between nodes and elements.
+  /// Adds a text between nodes or elements.
   void write_text(Piece part) {
     const std::string_view text = deck_.text;
     if (source_.same_numbers || part.begin == part.end) {
@@ -109,7 +109,7 @@ class CardWriter {
                      "keep the numbers: --ids keep");
   }
 
-  /// Writes a node in the basic system because its coordinates differ from the file.
+  /// Writes a node, whose coordinates have changed, in the basic system.
   void write_moved_node(Index v) {
     std::vector<std::string> texts{std::to_string(nodes_.at(v)), deck_.has_default_system ? "0" : ""};
     for (const double x : mesh_.points[v]) {
@@ -294,8 +294,8 @@ class BulkWriter {
  private:
   /// Most bytes between two nodes or elements that are written together.
   static constexpr std::size_t kBetween = 4096;
-  static constexpr Index kAhead = 8;      // items whose text is prefetched
-  static constexpr Index kFarAhead = 16;  // items whose entry in the table of cards is prefetched
+  static constexpr Index kAhead = 8;      // lookahead in items for text
+  static constexpr Index kFarAhead = 16;  // lookahead in items for the table of cards
 
   /// The slot of a node or an element in the text, and the vertex or cell that is written there.
   struct Item {
@@ -346,7 +346,7 @@ class BulkWriter {
     if (error_) std::rethrow_exception(error_);
   }
 
-  /// Returns the entry of the item in the deck's table of cards: its place in the text of the file.
+  /// Returns the item's entry in the deck's table of cards: the place of its card in the text.
   [[nodiscard]] const Piece* old_place(Item item) const {
     return item.is_node ? &source_.deck.node_cards[node_at_[item.next]]
                         : &source_.deck.element_cards[element_at_[item.next]].place;

@@ -11,7 +11,7 @@
 
 namespace meshorder::nastran {
 
-/// Fields besides the nodes in which an element may name a node or a point.
+/// Further fields in which an element may name a node or a point.
 enum class Extra : std::uint8_t {
   none,
   orientation,  ///< field 5 is a node if it is an integer and fields 6 and 7 are blank; else a direction
@@ -40,10 +40,10 @@ constexpr std::size_t kWarpingB = 18;
 /// the life of the program.
 const ElementType* element_type(std::string_view name);
 
-/// Returns whether elements of a type may have exactly the first `nodes` of their nodes.
+/// Returns whether elements of a type may end after their first `nodes` nodes.
 bool has_size(const ElementType& type, int nodes);
 
-/// Returns the name of the card for cells of a mesh of another format; an empty text if there is none.
+/// Returns the card for such cells of a mesh of another format; an empty text if there is none.
 std::string_view card_of(Shape shape, int nodes);
 
 /// Returns the place of the k-th vertex of a cell among the nodes of its element. Nastran lists the nodes on

@@ -28,7 +28,7 @@ struct ElementCard {
   int nodes = 0;  ///< vertices of the cell: all nodes of the card, or the corners if other nodes are missing
 };
 
-/// A file, and where its nodes and elements are in it.
+/// A file, and the places of nodes and elements in it.
 struct Deck : DeckContents {
   std::string text;  ///< all lines; lines of included files are in place
   Piece bulk;        ///< the lines between BEGIN BULK and ENDDATA, or all lines
@@ -36,12 +36,11 @@ struct Deck : DeckContents {
   std::vector<ElementCard> element_cards;
   std::vector<Point> points;        ///< positions of the nodes in the basic system
   bool has_default_system = false;  ///< whether GRDSET gives a system to nodes that name no system
-  /// Properties that BAROR and BEAMOR give to elements that name no property, by the name of the elements'
-  /// card.
+  /// Default properties from BAROR and BEAMOR, by the name of the elements' card.
   std::map<std::string_view, std::int64_t> default_properties;
   std::vector<std::int64_t> other_points;    ///< numbers of points that are not nodes, ascending
   std::vector<std::int64_t> other_elements;  ///< numbers of elements that are not cells, ascending
-  std::int64_t last_set = 0;                 ///< largest number of a set; `sets` has those of SET3
+  std::int64_t last_set = 0;                 ///< largest number of a set; `sets` has the sets of SET3
 };
 
 /// A deck, and where its nodes and elements are in the mesh.
@@ -74,7 +73,7 @@ struct Card {
   bool has_more = false;        ///< whether the card has fields that are not stored here
   bool lacks_nodes = false;     ///< whether some nodes of edges are missing, so that only corners count
   std::int64_t number = 0;      ///< number of the node or element
-  std::int64_t group = kBlank;  ///< system of the node or property of the element; kBlank if it names none
+  std::int64_t group = kBlank;  ///< system of the node or property of the element; kBlank if none is named
   Point point{};
   const ElementType* type = nullptr;
   int nodes = 0;                         ///< number of the cell's vertices
@@ -85,8 +84,8 @@ struct Card {
 /// no such number.
 std::int64_t number_in(const CardFields& fields, std::size_t field, std::string_view what, Piece card);
 
-/// Parses the present card; uses the memory of `fields`. Throws Fault if it is a line that continues no card,
-/// or a node or an element with a fault.
+/// Parses the present card; uses the memory of `fields`. Throws Fault for a line that continues no card, and
+/// for a faulty node or element.
 Card parse_card(const Cards& cards, CardFields& fields);
 
 // ---- writing
@@ -98,7 +97,7 @@ void write_into_deck(const Mesh& mesh, const BulkMetadata& own, const FilePath& 
 /// name that changes.
 ///
 /// @param number   of the set
-/// @param numbers  of its members
+/// @param numbers  of the nodes and elements
 void append_set(std::string& out, std::int64_t number, const EntitySet& set, const DeckNumbers& numbers,
                 std::string_view line_end, Notes& notes);
 

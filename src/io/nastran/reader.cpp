@@ -315,7 +315,7 @@ class DeckReader {
     }
   }
 
-  /// Finds names of nodes or elements in case control: in sets, curves, and grid points of commands.
+  /// Finds nodes or elements that case control names: in sets, curves, and grid points of commands.
   template <class Add>
   void find_in_control(std::string_view control, const Add& add) const {
     bool in_set = false;

@@ -14,8 +14,8 @@
 namespace meshorder::nastran {
 namespace {
 
-/// Cards with the same fields. One letter for each field after the name: a node (n), a node if the next field
-/// is blank (G), an element (e), the number of an element that is not a cell (x), other (-). Letters in
+/// Cards with the same fields, with one letter for each field after the name: a node (n), a node if the next
+/// field is blank (G), an element (e), the number of an element that is not a cell (x), other (-). Letters in
 /// parentheses repeat to the end of the card. N, E and S begin a list of nodes, elements and points that are
 /// not nodes. From a "." on, all fields must be blank: some programs give a second element there.
 struct CardPattern {
@@ -122,7 +122,7 @@ class Finder {
     return found_;
   }
 
-  /// RBE3 names grid points after each weight and its components; then come UM and ALPHA.
+  /// Finds the points of RBE3: after each weight and its components, and after UM.
   std::optional<References> of_rbe3() {
     found_.defines_element = true;
     add('n', 3);
@@ -152,7 +152,7 @@ class Finder {
     return found_;
   }
 
-  /// DMIG gives a matrix by columns, each for a point; its first card names no points.
+  /// Finds the points of DMIG (a matrix by columns, each of a point); its first card names none.
   std::optional<References> of_dmig() { return card_.text(2) == "0" ? found_ : by_layout("-n--(n---)"); }
 
   /// PLOAD4, a pressure on solids or shells, names one element and two nodes, or a range of elements.
@@ -219,7 +219,7 @@ std::optional<References> references(std::string_view name, const CardFields& ca
   const auto fields = kFieldsOfCards.find(name);
   if (fields == kFieldsOfCards.end()) return {};
   const auto found = finder.by_layout(fields->second);
-  const bool is_path = name == "BLSEG" && found && found->is_range;  // a line of nodes in their order
+  const bool is_path = name == "BLSEG" && found && found->is_range;  // the order of the nodes matters
   return is_path ? std::nullopt : found;
 }
 
@@ -230,7 +230,7 @@ std::optional<std::vector<NumberRange>> ranges_of(const CardFields& card, std::s
     if (text.empty()) continue;
     if (is_word(text, "THRU") || is_word(text, "BY")) {
       std::size_t next = k + 1;
-      while (next < card.fields.size() && card.text(next).empty()) ++next;  // it may be on the next line
+      while (next < card.fields.size() && card.text(next).empty()) ++next;  // may be on the next line
       const std::int64_t number = number_of(card.text(next));
       if (ranges.empty() || number == 0) return {};
       (is_word(text, "BY") ? ranges.back().step : ranges.back().to) = number;

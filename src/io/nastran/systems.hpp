@@ -23,12 +23,12 @@ class CoordinateSystems {
 
   explicit CoordinateSystems(const DeckText& file) : file_(file) {}
 
-  /// Adds the systems of a card that begins at that byte; ignores other cards. Throws InputError for fields
-  /// that are not numbers, and for a system that was given before.
+  /// Adds the systems of a card that begins at that byte; ignores other cards. Throws InputError for faulty
+  /// fields and for a system that was given before.
   void add(std::string_view name, const CardFields& fields, std::size_t byte);
 
-  /// Converts a point from a system to the basic system. Throws InputError for a system that is missing, has
-  /// no axes or refers to itself.
+  /// Converts a point from a system to the basic system. Throws InputError for a missing or faulty system and
+  /// if the result is not finite.
   ///
   /// @param byte  of the card that names the system
   [[nodiscard]] Point in_basic(std::int64_t system, const Point& point, std::size_t byte,

@@ -84,8 +84,8 @@ class BoundaryReader {
     return is_number && value >= 0 ? std::optional(value) : std::nullopt;
   }
 
-  /// Returns the number of faces of a patch. Throws InputError if a patch with faces does not begin at
-  /// `next`.
+  /// Returns the number of faces of a patch; throws InputError for a missing or wrong `nFaces` or
+  /// `startFace`.
   [[nodiscard]] std::int64_t checked(const Patch& patch, std::int64_t next) const {
     if (!patch.faces || !patch.first) {
       file_.fail(fmt::format("the patch '{}' gives no number for {}", patch.name,

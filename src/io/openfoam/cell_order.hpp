@@ -14,7 +14,7 @@ namespace meshorder::openfoam {
 /// `polyMesh`.
 inline constexpr std::string_view kCellOrder = "cellOrder";
 
-/// Writes the list of old cells in their new order. The caller commits the file.
+/// Writes the old number of each cell in the new order. The caller commits the file.
 void write_cell_order(const Permutation& cells, OutputFile& file);
 
 /// The entries of renumberMeshDict that take the order from `kCellOrder`. OpenFOAM 1912 refuses a dictionary

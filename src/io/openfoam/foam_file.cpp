@@ -15,7 +15,7 @@
 namespace meshorder::openfoam {
 namespace {
 
-/// Limit on the entries of a list with one value for all: the file holds no bytes for them, and a mesh whose
+/// Most entries of a list of one repeated value: these entries take no bytes in the file, and a mesh whose
 /// faces all have the same cell is small.
 constexpr std::int64_t kMostAlike = 1 << 20;
 

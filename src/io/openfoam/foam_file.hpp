@@ -24,12 +24,12 @@ namespace meshorder::openfoam {
 /// for them.
 class FoamFile {
  public:
-  /// Reads the file of that path, or that path with ".gz", and its header.
+  /// Reads the file at `path`, or at `path` with ".gz", and its header.
   ///
   /// @throws InputError for a file that is missing, unreadable or without a header
   explicit FoamFile(const FilePath& path);
 
-  /// Returns whether there is a file of that path, or of that path with ".gz".
+  /// Returns whether there is a file at `path`, or at `path` with ".gz".
   [[nodiscard]] static bool exists(const FilePath& path);
 
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
@@ -82,7 +82,7 @@ class FoamFile {
   std::errc take_number(T& value);
   /// Throws an InputError if the list that follows is text in a file whose header says `format binary`.
   void refuse_text() const;
-  /// Throws an InputError at the next word, which is not a number as `needed` describes it.
+  /// Throws an InputError at the next word, which is not the number that `needed` describes.
   [[noreturn]] void fail_number(std::string_view what, std::string_view needed);
   std::int64_t integer(std::string_view what);
   double finite(std::string_view what);
@@ -92,7 +92,7 @@ class FoamFile {
   double scalar(std::string_view what);
   /// Takes the size of a list whose entries take at least `bytes_each` bytes each.
   std::int64_t size(std::string_view what, std::int64_t bytes_each);
-  /// Returns the label that was read last; throws InputError if it is out of range.
+  /// Returns the last label read; throws InputError unless `least` ≤ `label` < `end`.
   Index checked(std::int64_t label, std::string_view what, std::int64_t least, std::int64_t end);
   Point point();
 

@@ -34,9 +34,9 @@ struct PolyMesh {
 PolyMesh read_poly_mesh(const std::filesystem::path& of_case, const std::filesystem::path& folder,
                         bool with_centres, Notes& notes);
 
-/// Checks that the patches of a file `boundary` cover the faces after the internal ones, one after another.
-/// Patches without faces may begin anywhere. Does not check a file that refers to other numbers by `$` or
-/// `#`. O(bytes of the file).
+/// Checks that the patches of a file `boundary` cover the faces after the internal ones in order, without
+/// gaps. Patches without faces may begin anywhere. Does not check a file that refers to other numbers by `$`
+/// or `#`. O(bytes of the file).
 ///
 /// @throws InputError for a file that is no list of patches, for a patch without `nFaces` or `startFace`, and
 ///         for patches that leave a gap, overlap or end too early or too late

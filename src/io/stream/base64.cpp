@@ -30,7 +30,7 @@ constexpr std::array<std::uint8_t, 256> kValues = [] {
 
 std::uint32_t byte_of(char c) { return static_cast<unsigned char>(c); }
 
-/// Writes the four characters of 24 bits.
+/// Writes the four characters of 24 bits; returns the address after them.
 char* put_group(char* at, std::uint32_t bits) {
   std::memcpy(at, kPairs[bits >> 12U].data(), 2);
   std::memcpy(at + 2, kPairs[bits & 4095U].data(), 2);

@@ -11,7 +11,7 @@ namespace meshorder {
 inline constexpr std::string_view kBase64Alphabet =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// Returns the number of characters for that many bytes, padding included.
+/// Returns the number of characters that encode `bytes` bytes, with padding.
 constexpr std::uint64_t base64_length(std::uint64_t bytes) { return (bytes + 2) / 3 * 4; }
 
 /// Encodes bytes as base64 (RFC 4648), part by part.
@@ -29,8 +29,8 @@ class Base64Encoder {
 
 std::string to_base64(std::span<const char> bytes);
 
-/// Decodes the beginning of a text until `bytes` is full. Returns false if the text is too short or has other
-/// characters; the bytes then have no meaning.
+/// Decodes the beginning of a text until `bytes` is full. Returns false if the text is too short or has a
+/// wrong character; `bytes` is then undefined.
 [[nodiscard]] bool from_base64(std::string_view text, std::span<char> bytes);
 
 }  // namespace meshorder

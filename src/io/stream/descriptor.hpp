@@ -9,11 +9,11 @@
 
 namespace meshorder {
 
-/// A file descriptor, which the destructor closes. The functions return 0 or an `errno`.
+/// A file descriptor, which the destructor closes. `write`, `sync` and `close` return 0 or an `errno`.
 class Descriptor {
  public:
   Descriptor() = default;
-  /// Opens a file as `open` does, with O_CLOEXEC; sets errno and is not open if that fails.
+  /// Opens a file as `open` does, with O_CLOEXEC. On failure sets `errno`, and `is_open` is false.
   Descriptor(const std::filesystem::path& path, int flags, unsigned mode = 0);
   explicit Descriptor(int descriptor) noexcept : descriptor_(descriptor) {}
   ~Descriptor() { close(); }
@@ -32,8 +32,7 @@ class Descriptor {
   [[nodiscard]] int write(std::string_view bytes) const noexcept;
   /// Waits until all bytes written so far are on the disk; does nothing if the file system has no `fsync`.
   [[nodiscard]] int sync() const noexcept;
-  /// Lets the system begin to put the bytes written so far on the disk; does not wait. `sync` then has less
-  /// to wait for.
+  /// Makes the system begin to put the bytes written so far on the disk; does not wait. Speeds up `sync`.
   void begin_sync() const noexcept;
   int close() noexcept;
 
@@ -44,7 +43,7 @@ class Descriptor {
 /// Returns how many descriptors may be held for locks: a quarter of the process's limit, at most 128.
 [[nodiscard]] std::size_t descriptors_for_locks() noexcept;
 
-/// Waits until the names in a folder are on the disk.
+/// Waits until the names in a folder are on the disk. Returns 0 or an `errno`.
 [[nodiscard]] int sync_folder(const std::filesystem::path& folder) noexcept;
 
 /// The reason why a system call failed, as a clause, and a remedy.
@@ -53,7 +52,7 @@ struct SystemFault {
   std::string remedy;
 };
 
-/// Returns reason and remedy for an `errno` of calls that write or replace files.
+/// Returns reason and remedy for the `errno` of a call that writes or replaces a file.
 SystemFault system_fault(int error);
 
 /// Throws InputError "FILE: WHAT: REASON; REMEDY" for an `errno`.

@@ -7,14 +7,14 @@
 
 namespace meshorder {
 
-/// The digits at the beginning of a text: how many there are, and, if at most 7, the number that they form.
+/// The leading digits of a text: their count and, if there are at most 7, the number that they form.
 struct Digits {
   int count = 0;  ///< 8 means eight or more; then `number` is 0
   std::uint32_t number = 0;
 };
 
-/// Reads the digits at the beginning of 8 bytes all at once, without a branch for each. Most numbers of a
-/// mesh have fewer than 8 digits.
+/// Reads the leading digits of 8 bytes at once, without a branch for each digit. Most numbers of a mesh have
+/// fewer than 8 digits.
 inline Digits leading_digits(const char* text) noexcept {
   std::uint64_t bytes = 0;
   std::memcpy(&bytes, text, sizeof(bytes));
@@ -23,13 +23,14 @@ inline Digits leading_digits(const char* text) noexcept {
     for (int k = 0; k < 8; ++k) reversed |= ((bytes >> (8 * k)) & 0xFFU) << (56 - 8 * k);
     bytes = reversed;
   }
-  // a digit is a byte 0x30 … 0x39, which becomes 0 … 9; `others` has the highest bit of every other byte
+  // `values` has 0 … 9 for the digits 0x30 … 0x39; `others` has the highest bit of each byte that is no digit
   constexpr std::uint64_t kOnes = 0x0101010101010101U;
   const std::uint64_t values = bytes ^ (kOnes * '0');
   const std::uint64_t others = (values | ((values & (kOnes * 0x7FU)) + kOnes * 0x76U)) & (kOnes * 0x80U);
   const int count = std::countr_zero(others) / 8;
   if (count == 0 || count == 8) return {count, 0};
-  // moves the digits to the end, after zeros; then joins them to pairs, to groups of four and to all eight
+  // moves the digits to the last bytes, after zeros; then combines digits to pairs, to fours and to the
+  // number
   std::uint64_t number = values << (64 - 8 * count);
   number = number * 10 + (number >> 8U);
   number = ((number & 0x000000FF000000FFU) * 0x000F424000000064U +
@@ -40,10 +41,10 @@ inline Digits leading_digits(const char* text) noexcept {
 
 constexpr std::uint32_t kDigitsAtOnce = 100'000'000;  ///< `put_digits` takes smaller numbers only
 
-/// Writes the digits of a number below `kDigitsAtOnce` all at once, without a branch for each. Returns their
-/// end. May write 8 bytes even if there are fewer digits.
+/// Writes the digits of a number below `kDigitsAtOnce` at once, without a branch for each digit. Returns the
+/// end of the digits. May write 8 bytes even if there are fewer digits.
 inline char* put_digits(char* at, std::uint32_t number) noexcept {
-  // splits into groups of four, pairs and digits; the first ones are in the lowest bytes
+  // splits the number into fours, pairs and digits; the leading digits are in the lowest bytes
   const std::uint64_t fours = number / 10000 + (std::uint64_t{number % 10000} << 32U);
   const std::uint64_t hundreds = (fours * 10486 >> 20U) & 0x0000007F0000007FU;
   const std::uint64_t pairs = hundreds + ((fours - 100 * hundreds) << 16U);

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Fills `into` with the first bytes of a file, on all threads if `into` is large. Returns how many bytes it
-/// read: fewer than `into` holds if the file ends.
+/// read: fewer than the size of `into` if the file is shorter.
 std::size_t read_on_threads(InputFile& file, std::span<char> into) {
   constexpr Offset kAtOnce = Offset{16} << 20;
   if (std::ssize(into) <= kAtOnce) return file.read(into);
@@ -43,7 +43,7 @@ std::size_t read_on_threads(InputFile& file, std::span<char> into) {
 
 /// Returns the first `wanted` bytes of a file.
 std::string read_sized(InputFile& file, const std::string& name, std::uint64_t wanted) {
-  // the limit on claims does not limit the stored bytes of a file
+  // a file may have more bytes than the limit on claims
   const std::uint64_t most = std::max(limit_on_unknown_sizes(), usable_memory() / 4 * 3);
   if (wanted > most) {
     throw InputError(
@@ -81,7 +81,7 @@ std::string all_of(const Read& read, const std::string& name) {
   return bytes;
 }
 
-/// Returns the bytes of a file, at most `most` of them; of a pipe, all bytes.
+/// Returns the first bytes of a file, at most `most`; of a pipe, all bytes.
 std::string read_from_disk(const FilePath& path, std::uint64_t most) {
   InputFile file = path.open();
   // pipes and files of /proc report the size 0

@@ -25,7 +25,7 @@ std::string read_to_end(std::istream& stream, const std::string& name);
 class FileStore : public Polymorphic {
  public:
   [[nodiscard]] virtual bool has(const std::filesystem::path& path) const = 0;
-  /// Returns the bytes of a file, an empty text if the file is not there.
+  /// Returns the bytes of a file; empty if the store has no such file.
   [[nodiscard]] virtual std::string read(const std::filesystem::path& path) const = 0;
   /// Adds a file or replaces it.
   virtual void write(const std::filesystem::path& path, std::string bytes) = 0;
@@ -50,10 +50,10 @@ class FilePath {
   FilePath(FilePath path, OutputSet& set)
       : path_(std::move(path.path_)), folder_(std::move(path.folder_)), set_(&set) {}
 
-  /// A file on disk below a folder that the user named; this program, or a file, gave the rest of the path.
-  /// The file is read only if it lies below the folder after links are resolved (see `may_include`).
+  /// Returns a file on disk below a folder that the user named; this program, or a file, gave the rest of the
+  /// path. Reading fails unless the resolved path is below that folder or an allowed one (`may_include`).
   static FilePath in(std::filesystem::path folder, std::filesystem::path path);
-  /// As `in`, with the path's own folder, for a file whose name this program made.
+  /// As `in`, with the folder of `path`: for a file whose name this program made.
   static FilePath derived(const std::filesystem::path& path) { return in(path.parent_path(), path); }
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
@@ -77,11 +77,11 @@ class FilePath {
   /// Opens a file on disk. Throws InputError as `InputFile` does.
   [[nodiscard]] InputFile open() const;
   /// Returns the bytes of the file; decompresses a gzip file. Throws InputError for a folder, a device, an
-  /// unreadable or an empty file, a file that changes meanwhile or exceeds the memory limit, and a damaged
-  /// gzip file; Unavailable for a gzip file in a build without zlib.
+  /// unreadable or an empty file, a file that changes during the call or exceeds the memory limit, and a
+  /// damaged gzip file; Unavailable for a gzip file in a build without zlib.
   [[nodiscard]] std::string read() const;
   /// Returns the first bytes of the file, at most `most`, without decompressing them. Reads a pipe to its
-  /// end. Throws InputError for a folder, a device, an unreadable or an empty file.
+  /// end. Throws InputError as `read`, but not for a damaged gzip file.
   [[nodiscard]] std::string read_first(std::size_t most) const;
 
   /// Returns the file of that name in the same folder.

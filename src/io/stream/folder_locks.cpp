@@ -28,7 +28,7 @@ void wait_for_lock(const Descriptor& folder, Clock::time_point last) {
   }
 }
 
-/// The folders that this process holds.
+/// The folders that `HeldFolder` objects mark.
 struct Held {
   std::mutex mutex;
   std::set<Identity> folders;
@@ -67,7 +67,7 @@ FolderLocks::FolderLocks(const std::set<std::filesystem::path>& folders) {
     for (const Identity& identity : held.folders) by_identity.erase(identity);
   }
   const Clock::time_point last = Clock::now() + kLongestWait;
-  const std::size_t most = descriptors_for_locks() / 2;  // scratch folders take the others
+  const std::size_t most = descriptors_for_locks() / 2;  // scratch folders need locks too
   for (const auto& [identity, folder] : by_identity) {
     if (locked_.size() >= most) return;
     Descriptor opened(folder, O_RDONLY | O_DIRECTORY);

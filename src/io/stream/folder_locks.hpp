@@ -12,8 +12,8 @@
 
 namespace meshorder {
 
-/// Marks a folder that this process has locked by other means, as long as this object lives. `FolderLocks`
-/// skips the folder: otherwise the process would wait for itself.
+/// Marks, while it lives, a folder that this process has locked by other means. `FolderLocks` skips such
+/// folders: otherwise the process would wait for itself.
 class HeldFolder {
  public:
   /// @param descriptor  of the open folder
@@ -30,7 +30,7 @@ class HeldFolder {
 
 /// Locks on folders (`flock`): only one process at a time renames files there. Anyone who may read a folder
 /// can lock it. Therefore the wait is limited: after ten seconds the process goes on without the remaining
-/// locks. It also goes on if a folder cannot be opened or the file system has no locks.
+/// locks. The process also goes on if a folder cannot be opened or the file system has no locks.
 class FolderLocks {
  public:
   /// Locks the folders, always in the same order: two processes then never wait for each other. If there are

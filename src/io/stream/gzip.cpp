@@ -27,13 +27,13 @@ bool is_gzip(const std::string& bytes) { return bytes.starts_with("\x1f\x8b"); }
 #ifdef MESHORDER_HAS_ZLIB
 
 constexpr std::size_t kInflateStep = std::size_t{1} << 20;
-/// Bytes of a block. The C library keeps smaller blocks for later use when they are freed.
+/// Bytes of a block: so many that the C library returns a freed block to the system.
 constexpr std::size_t kInflateBlock = 33 * kInflateStep;
 
 /// Bytes in blocks, which do not move when more bytes are added.
 class InflatedBlocks {
  public:
-  /// Returns space for the next bytes, at most `kInflateStep` of them.
+  /// Returns space for 1 … `kInflateStep` more bytes.
   std::span<char> next() {
     if (used_ == kInflateBlock * blocks_.size())
       blocks_.push_back(std::make_unique_for_overwrite<char[]>(kInflateBlock));
@@ -70,7 +70,7 @@ class Inflation {
   Inflation& operator=(const Inflation&) = delete;
   Inflation& operator=(Inflation&&) = delete;
 
-  /// Returns the beginning of the decompressed bytes, up to a fault or the size of a step.
+  /// Returns the first decompressed bytes: at most `kInflateStep`, and none after a fault.
   std::string start() {
     feed();
     std::string result(kInflateStep, '\0');
@@ -107,7 +107,7 @@ class Inflation {
  private:
   [[nodiscard]] std::size_t bytes_left() const { return bytes_.size() - fed_ + stream_.avail_in; }
 
-  /// Gives the library the next bytes, at most as many as its counter can hold.
+  /// Gives zlib the next bytes, at most 2³¹ − 1, if it has used the last ones.
   void feed() {
     if (stream_.avail_in > 0) return;
     const std::size_t size =

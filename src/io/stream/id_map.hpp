@@ -10,9 +10,8 @@
 
 namespace meshorder {
 
-/// The ids that a file gives to its vertices or cells, in file order, and a map from ids back to positions,
-/// counted from 0. Consecutive ids take no memory. Other ids are in a table if it has few gaps, else in a
-/// hash map.
+/// The ids of a file's vertices or cells, in file order, and a map from each id to its position, counted from
+/// 0. Consecutive ids take no memory. Otherwise small ids are in a table, all others in a hash map.
 class IdMap {
  public:
   /// Appends the id of the next position. Returns false and leaves the map unchanged if `id` is already
@@ -80,7 +79,7 @@ class IdMap {
 
   void keep(std::int64_t id, Index position) {
     ids_.push_back(id);
-    // the table has a few entries for each id so far; ids outside of it go into the map
+    // the table has at most a few entries per id; ids outside its range go into the hash map
     const std::int64_t dense = 4 * std::int64_t{size_} + 1024;
     if (id < 0 || id >= dense || id >= kMaxIndex / 2) {
       sparse_.emplace(id, position);

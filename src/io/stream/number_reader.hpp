@@ -42,7 +42,7 @@ struct NumberReader {
   double text_real(std::string_view what);
   /// Returns `text` as an integer; throws InputError if it is not one.
   [[nodiscard]] std::int64_t parsed(std::string_view text, std::string_view what) const;
-  /// In a binary file, moves to the line after this one, where binary numbers begin.
+  /// In a binary file, moves to the next line, where the binary numbers begin.
   void begin_binary();
 
   Scanner scanner;

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kFlushAt = std::size_t{1} << 20;
 constexpr std::size_t kNoCopyAt = std::size_t{1} << 16;  // texts of this size or more are not copied
-constexpr std::size_t kSyncAt = std::size_t{32} << 20;   // after this many bytes, writing to the disk begins
+constexpr std::size_t kSyncAt = std::size_t{32} << 20;   // bytes between two calls of `begin_sync`
 constexpr mode_t kMode = 0666;                           // the umask or the folder's default ACL removes bits
 constexpr mode_t kPrivateMode = 0600;                    // until the new file gets the mode of the old file
 
@@ -32,7 +32,7 @@ constexpr mode_t kPrivateMode = 0600;                    // until the new file g
 struct OutputFile::Stream {
   Text text;
   OutputPlace place;
-  std::optional<Scratch> scratch;  ///< empty if the text is the whole file
+  std::optional<Scratch> scratch;  ///< empty if `text` holds the whole file
   Descriptor file;
   std::size_t since_sync = 0;  ///< bytes written since the last `begin_sync`
 

@@ -30,7 +30,7 @@ class Scratch;
 /// in memory and written at `commit`.
 class OutputFile {
  public:
-  /// Throws InputError if the folder does not exist or cannot be written, or the target is a folder.
+  /// Throws InputError if the target cannot be written, for example if its folder does not exist.
   explicit OutputFile(FilePath target);
   ~OutputFile();
   OutputFile(OutputFile&& other) noexcept;
@@ -38,7 +38,7 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  // as the functions of `Text`
+  // each appends as the `Text` function of the same name
   template <class... Args>
   void print(fmt::format_string<Args...> format, Args&&... args) {
     text().print_all(format, fmt::make_format_args(args...));
@@ -62,7 +62,7 @@ class OutputFile {
     written(put_number(room(sizeof(T)), value, order));
   }
 
-  /// Overwrites the first bytes; at least as many must have been written before.
+  /// Overwrites the first bytes; the file must already have that many.
   void write_over_start(std::string_view bytes);
 
   [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_.path(); }
@@ -90,7 +90,7 @@ class OutputFile {
   // for OutputSet
   /// Writes a target that cannot be replaced or that is in a store.
   void write_directly();
-  /// Returns null for a target that is written directly.
+  /// Returns the scratch folder, null for a target that is written directly.
   [[nodiscard]] const Scratch* scratch() const noexcept;
 
   FilePath target_;

@@ -41,8 +41,8 @@ int own_descriptor(const fs::path& path) {
   return -1;
 }
 
-/// Throws InputError for a link in a folder like /tmp, unless it belongs to this user or the folder's owner.
-/// The kernel's protected_symlinks does the same.
+/// Throws InputError for a link in a folder like /tmp, unless the link belongs to this user or the folder's
+/// owner. The kernel's protected_symlinks does the same.
 void refuse_link_of_others(const fs::path& link) {
   struct stat folder {};
   struct stat own {};
@@ -53,8 +53,8 @@ void refuse_link_of_others(const fs::path& link) {
                    "name the file itself");
 }
 
-/// Throws InputError if the file, or one of the folders that this program named, is a symbolic link: another
-/// user may have put the link there to have some other file replaced.
+/// Throws InputError if a part of the path that this program named is a symbolic link: another user may have
+/// put the link there to have some other file replaced.
 void refuse_links_in_derived(const FilePath& file) {
   if (!file.folder()) return;
   fs::path path = file.path();
@@ -71,7 +71,7 @@ void refuse_links_in_derived(const FilePath& file) {
   }
 }
 
-/// Returns the path to which a link leads, relative to the same folder as `path`; nullopt if it is no link.
+/// Returns the target of the link `path`, joined to the link's folder; nullopt if `path` is no link.
 std::optional<fs::path> link_content(const fs::path& path) {
   std::error_code code;
   const fs::path content = fs::read_symlink(path, code);

@@ -12,7 +12,7 @@ namespace meshorder {
 struct OutputPlace {
   std::filesystem::path path;  ///< with all symbolic links followed
   bool exists = false;
-  bool is_through = false;   ///< a device, a pipe or an open file of this process: nothing to replace
+  bool is_through = false;   ///< a device, a pipe or an open file of this process: cannot be replaced
   int own_descriptor = -1;   ///< of an open file of this process, such as /dev/stdout; else −1
   unsigned other_names = 0;  ///< hard links besides this one
 };
@@ -21,9 +21,9 @@ struct OutputPlace {
 std::filesystem::path folder_of(const std::filesystem::path& path);
 
 /// Returns where a path leads, with all symbolic links followed. Throws InputError for a folder, for links in
-/// a circle, for a name that the file system refuses, and for a link of another user in a folder open to all.
-/// If this program named the file or a part of its path, also throws for a link in that part, a device or
-/// a pipe.
+/// a circle, for a path that the system refuses, and for a link of another user in a folder open to all. If
+/// this program named the file or a part of its path, also throws for a link in that part, a device or a
+/// pipe.
 OutputPlace output_place(const FilePath& file);
 
 /// Gives an open file the owner, the group, the mode, the ACLs and the other extended attributes of the file

@@ -34,7 +34,7 @@ int renamed(const fs::path& from, const fs::path& to) {
   return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
 }
 
-/// A new file that replaces its target, or a target that is removed.
+/// The replacement of one target by a new file, or the removal of one target.
 class Move {
  public:
   /// @param fresh  the new file; empty: the target is removed
@@ -51,7 +51,7 @@ class Move {
     return renamed(fresh_, target_);
   }
 
-  /// Puts the old file back, also if `apply` failed. Returns 0 or an `errno`.
+  /// Puts the old file back or removes the new one, also if `apply` failed. Returns 0 or an `errno`.
   [[nodiscard]] int take_back() const {
     if (existed_ && is_there(old_)) return renamed(old_, target_);
     if (fresh_.empty() || is_there(fresh_)) return 0;  // nothing was done
@@ -68,7 +68,7 @@ class Move {
   bool existed_ = false;
 };
 
-/// The function that asks another process to put files in place; empty if there is none.
+/// Returns the function that asks another process to put files in place; empty if there is none.
 PutInPlace& other_process() {
   static PutInPlace ask;
   return ask;
@@ -78,7 +78,7 @@ bool is_beside_target(const FinishedFile& file) {
   return folder_of(output_place(file.target).path) == file.scratch.parent_path();
 }
 
-/// Gives a file the attributes of the file that it replaces and syncs it.
+/// Gives a new file the attributes of the old one, then syncs the new file.
 void complete(const FinishedFile& file, const OutputPlace& place) {
   if (place.is_through || folder_of(place.path) != file.scratch.parent_path())
     throw InputError(file.target.string(), "was replaced by something else meanwhile",
@@ -91,12 +91,12 @@ void complete(const FinishedFile& file, const OutputPlace& place) {
   if (error != 0) throw_system_fault(file.target.string(), "cannot be written to the end", error);
 }
 
-/// Applies all moves. If a move cannot be applied, puts the old files back and throws InputError.
+/// Applies all moves. If a move or a folder's sync fails, puts the old files back and throws InputError.
 void apply_all(std::vector<Move>& moves) {
   std::set<fs::path> folders;
   for (const Move& move : moves) folders.insert(folder_of(move.target()));
   const FolderLocks locked(folders);
-  std::vector<bool> is_back(moves.size(), true);  // allocated now: putting files back needs no memory then
+  std::vector<bool> is_back(moves.size(), true);  // allocated before any move: undoing needs no memory
   int error = 0;
   std::size_t begun = 0;
   while (error == 0 && begun < moves.size()) error = moves[begun++].apply();

@@ -22,16 +22,16 @@ class OutputSet {
   OutputSet& operator=(const OutputSet&) = delete;
   OutputSet& operator=(OutputSet&&) = delete;
 
-  /// Adds a file to which nothing more is written; `OutputFile::commit` calls this. Throws InputError if it
-  /// cannot be closed.
+  /// Adds a file to which nothing more is written; `OutputFile::commit` calls this. Throws InputError if the
+  /// file cannot be closed.
   void add(OutputFile&& file);
 
-  /// Makes `commit` remove a file of an earlier run, if it exists, that is not part of this set.
+  /// Makes `commit` remove a file of an earlier run if it exists and is not part of this set.
   void remove(FilePath path) { removals_.push_back(std::move(path)); }
 
-  /// Makes `commit` first remove an old file that readers need to read the others, for example a file that
-  /// names them. If the process is then killed, the set cannot be read, but nobody reads a mixture of old and
-  /// new files. For outputs without a mark (see `put_in_place`). Add the new version of that file last.
+  /// Makes `commit` first remove an old file without which nobody can read the others, for example one that
+  /// names them. If the process is then killed, nobody reads a mixture of old and new files. For outputs
+  /// without a mark (see `put_in_place`). Add the new version of that file last.
   void remove_first(FilePath path) { removals_first_.push_back(std::move(path)); }
 
   /// Puts all files in place. Throws InputError as `put_in_place`.
@@ -53,8 +53,8 @@ struct FinishedFile {
   FilePath target;
 };
 
-/// Replaces targets by new files, and removes other files. Every output of the program goes through this
-/// function:
+/// Replaces targets by new files, and removes other files. Every output that is an ordinary file goes through
+/// this function:
 ///
 /// 1. each file gets the attributes of the file that it replaces, and is synced;
 /// 2. the folders are locked (`flock`): sets of two processes do not mix;
@@ -74,13 +74,13 @@ std::vector<std::string> put_in_place(std::span<const FinishedFile> files,
                                       std::span<const FilePath> removed_first = {},
                                       std::span<const FilePath> removed = {});
 
-/// As `put_in_place`.
+/// A function with the parameters, result and errors of `put_in_place`.
 using PutInPlace = std::function<std::vector<std::string>(std::span<const FinishedFile> files,
                                                           std::span<const FilePath> removed_first,
                                                           std::span<const FilePath> removed)>;
 
-/// Makes `put_in_place` call `other`, which asks another process, for outputs whose scratch folders are not
-/// beside them (`keep_scratches_in`). Call it while there is one thread.
+/// For outputs whose scratch folders are elsewhere (`keep_scratches_in`), makes `put_in_place` call `other`,
+/// which asks another process. Call it while there is one thread.
 void put_in_place_by(PutInPlace other);
 
 }  // namespace meshorder

@@ -16,16 +16,16 @@
 namespace meshorder {
 
 /// The reading of one mesh by the current thread. Sums the sizes of the mesh's files and the claims: memory
-/// for data that these files announce but do not hold. Lists folders of files that the mesh may name.
+/// for data that these files announce but do not hold. Lists the folders whose files the mesh may name.
 ///
-/// The claims of a mesh must not exceed a limit in all: `memory`; else the limit that the process was given;
-/// else 256 MiB plus 100 times the size of the files, but at most `memory_limit()`. Without a ReadScope, each
+/// All claims of a mesh together must not exceed a limit: `memory`, else the limit given to the process, else
+/// 256 MiB plus 100 times the size of the files, but at most `memory_limit()`. Without a ReadScope, each
 /// single claim may take `memory_limit()`.
 class ReadScope {
  public:
   /// @param file             the mesh, for messages; must outlive this object
   /// @param memory           the limit on claims in bytes; if empty, as above
-  /// @param include_folders  more folders that may hold files that the mesh names, besides its own folder
+  /// @param include_folders  further folders for files that the mesh names, besides its own folder
   explicit ReadScope(const FilePath& file, std::optional<std::uint64_t> memory = {},
                      std::vector<std::filesystem::path> include_folders = {});
   ~ReadScope();
@@ -69,7 +69,7 @@ inline constexpr std::uint64_t kCopiesOfClaim = 4;
 /// claims do not include them.
 [[nodiscard]] std::string refused_for_a_while(std::uint64_t bytes, std::string_view what);
 
-/// Returns how many bytes of its limit were unclaimed after the last mesh that this process read.
+/// Returns how many bytes of the limit were unclaimed after this process last read a mesh.
 std::uint64_t left_by_last_reading();
 
 /// The advice in messages about a claim that is refused.
@@ -82,13 +82,13 @@ void claim_memory(std::uint64_t bytes, std::string_view what, Location where = {
 /// Returns the limit in bytes on an input whose size is not known before it is read.
 std::uint64_t limit_on_unknown_sizes();
 
-/// Allows files below that folder to be included by all meshes that this process reads.
+/// Lets all meshes that this process reads include files below `folder`.
 void allow_includes_from(std::filesystem::path folder);
 
 /// Returns the folders that `allow_includes_from` has allowed.
 const std::vector<std::filesystem::path>& allowed_include_folders();
 
-/// Returns the folders that may hold files named by a file in `folder`: `folder` and the allowed ones.
+/// Returns the folders that may hold files named by a file in `folder`: `folder` and all allowed folders.
 std::vector<std::filesystem::path> folders_for_includes(const std::filesystem::path& folder);
 
 /// Returns whether the mesh `from` may name `file` as a file to read: `file` must be below the folder of

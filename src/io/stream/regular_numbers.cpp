@@ -47,7 +47,7 @@ std::size_t words_in(std::string_view text) {
   return words;
 }
 
-/// Reads a number at `at` if the whole word is a number; returns its end, or null.
+/// Reads the word at `at` if all of it is a number. Returns the word's end, else null.
 template <class Number>
 const char* read_number(const char* at, const char* end, Number& value) {
   if constexpr (std::is_integral_v<Number>) {
@@ -64,7 +64,8 @@ const char* read_number(const char* at, const char* end, Number& value) {
   return code == std::errc{} && (after == end || is_separator(*after)) ? after : nullptr;
 }
 
-/// Divides the text from `begin` to `end` into parts. Each part ends after a separator or with the text.
+/// Divides the text from `begin` to about `end` into at most `kMostParts` parts. Each part ends after a
+/// separator or with the text.
 std::vector<std::string_view> divided_at_blanks(std::string_view text, std::size_t begin, std::size_t end,
                                                 std::size_t part_bytes) {
   std::vector<std::string_view> parts;
@@ -77,7 +78,7 @@ std::vector<std::string_view> divided_at_blanks(std::string_view text, std::size
   return parts;
 }
 
-/// Returns the position of each part's first word among all words, then the number of words.
+/// Returns the number of words before each part, then the number of all words.
 std::vector<std::size_t> first_words(const std::vector<std::string_view>& parts) {
   std::vector<std::size_t> first(parts.size() + 1, 0);
   for_each_chunk(index_size(parts), 1,
@@ -86,8 +87,8 @@ std::vector<std::size_t> first_words(const std::vector<std::string_view>& parts)
   return first;
 }
 
-/// Reads as many numbers as `values` holds. The result's `bytes` is the size of the part if that part holds
-/// nothing after these numbers but separators.
+/// Reads as many numbers as `values` holds. If only separators follow these numbers, the result's `bytes` is
+/// the size of the part.
 template <class Number>
 RegularNumbers read_part(std::string_view part, std::span<Number> values) {
   RegularNumbers read;

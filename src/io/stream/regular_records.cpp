@@ -30,19 +30,19 @@ struct TextPart {
   bool is_regular = false;
 };
 
-/// What the records of a text are, and how to read one.
+/// The form of a text's records, and the function that reads one.
 struct Records {
   const std::function<bool(Scanner&, Index)>& read;
   Index lines = 1;            ///< number of lines of each record
-  bool may_be_blank = false;  ///< all lines belong to records, not only those with words
+  bool may_be_blank = false;  ///< all lines belong to records, not only lines with words
 
-  /// Returns how many records begin in `record_lines` lines.
+  /// Returns how many records begin in the first `record_lines` lines of records.
   [[nodiscard]] std::int64_t begin_in(std::int64_t record_lines) const {
     return (record_lines + lines - 1) / lines;
   }
 };
 
-/// Counts the lines of a part, and among them those of records, as a Scanner does.
+/// Counts a part's lines, and separately its lines of records, as a Scanner does.
 void count_lines(std::string_view text, char comment, const Records& records, TextPart& part) {
   const std::string_view whole = text.substr(part.begin, part.end - part.begin);
   const bool has_returns = whole.find('\r') != std::string_view::npos;
@@ -62,8 +62,8 @@ void count_lines(std::string_view text, char comment, const Records& records, Te
   }
 }
 
-/// Divides the text from `begin` on into parts, up to the estimated end of `lines` lines. The estimate keeps
-/// short runs of records cheap: a run must not cost a pass over the rest of the text.
+/// Divides the text from `begin` on into parts, up to the estimated end of `lines` lines. Without the
+/// estimate, even a short run of records would cost a pass over the rest of the text.
 std::vector<TextPart> divided(std::string_view text, std::size_t begin, std::size_t bytes,
                               std::size_t lines) {
   std::vector<TextPart> parts;
@@ -78,7 +78,7 @@ std::vector<TextPart> divided(std::string_view text, std::size_t begin, std::siz
 }
 
 /// Reads the records from `record` to `last` − 1, up to the first irregular one. Returns the number of the
-/// first record that was not read, and moves `in` after the record before it.
+/// first record that was not read, and moves `in` after the last record read.
 std::int64_t read_one_by_one(Scanner& in, std::int64_t record, std::int64_t last, const Records& records) {
   Scanner at = in;
   try {
@@ -95,7 +95,7 @@ std::int64_t read_one_by_one(Scanner& in, std::int64_t record, std::int64_t last
   return record;
 }
 
-/// Reads the records that begin in a part, of `count` records in all; moves `at` after them.
+/// Reads the records below number `count` that begin in a part; moves `at` after them.
 void read_records_of(Scanner& at, Index count, const Records& records, TextPart& part) {
   if (part.has_other_ends) return;
   const std::int64_t first = records.begin_in(part.record_lines_before);

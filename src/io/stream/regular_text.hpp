@@ -28,15 +28,15 @@ RegularNumbers read_numbers_of_type(std::string_view text, std::span<Number> val
 
 /// Reads numbers from the beginning of a text on all threads, as far as they are regular: in the form and
 /// range of `std::from_chars`, and separated by blanks, tabs and line ends alone. The caller reads the other
-/// numbers one by one, as it would read all of them: errors and results are then the same.
+/// numbers one by one: errors and results are then those of reading all numbers one by one.
 ///
-/// The text is divided at blanks and line ends into parts. The number of words in each part gives the first
-/// number of the next.
+/// The text is divided at blanks and line ends into parts. The words of each part are counted, which gives
+/// the index of the next part's first number.
 ///
 /// @param values      receives the numbers, as many as fit; entries after those read may be overwritten
 /// @param part_bytes  least size of a part, > 0
-/// @note O(bytes of the numbers); memory: a few numbers for each part.
-///       Reads nothing for types that are rare in files.
+/// @note O(bytes of the numbers); memory: a few numbers for each part. Reads nothing if `Number` is a type
+///       that is rare in files.
 template <class Number>
 RegularNumbers read_regular_numbers(std::string_view text, std::span<Number> values,
                                     std::size_t part_bytes = std::size_t{1} << 20) {
@@ -61,27 +61,26 @@ std::size_t read_regular_numbers(Scanner& in, std::span<Number> values) {
   return read.count;
 }
 
-/// Returns whether a text has any of these bytes; looks on all threads. O(bytes).
+/// Returns whether a text has any of these bytes; uses all threads. O(size of the text).
 bool has_any_of(std::string_view text, std::string_view bytes);
 
-/// Counts the words of a text on all threads. All bytes up to the space separate words.
+/// Counts the words of a text on all threads. Every byte ≤ 0x20 separates words.
 std::size_t count_words(std::string_view text);
 
-/// Reads the next records of a text, each on lines of its own, on all threads, as far as they are regular.
-/// Returns how many records it read; the scanner is then after the last of them. The caller reads the other
-/// records one by one: it reports their errors and accepts what is unusual but valid. So errors and results
-/// are those of a reader that reads all records one by one.
+/// Reads the next records of a text on all threads, as far as they are regular. Each record has its own
+/// lines. Returns how many records it read; the scanner is then after the last of them. The caller reads the
+/// other records one by one: it reports their errors and accepts what is unusual but valid. So errors and
+/// results are those of a reader that reads all records one by one.
 ///
-/// The text is divided at line ends into parts. The number of lines with a word in each part gives the first
-/// record of the next. A part has the records that begin in it.
+/// The text is divided at line ends into parts; a record belongs to the part in which it begins. The lines
+/// with words in each part are counted, which gives the first record of the next part.
 ///
-/// @param in     is after all text that precedes the first record: on the record's line, or on a line before
-/// it
+/// @param in     its next word must be the first word of the first record
 /// @param count  the most records to read, ≥ 0
 /// @param read   `read(part, record)` takes the words of a record; returns false if the record is not
-///              regular. It writes only data of the record, and may be called again for the same record. A
-///              record is also not regular if `read` throws an InputError, if more words follow on its last
-///              line, or if it has another number of lines
+///              regular. `read` writes only data of the record, and may be called again for the same record.
+///              A record is also not regular if `read` throws an InputError, if more words follow on its last
+///              line, or if its number of lines is not `lines`
 /// @param part_bytes  least size of a part, > 0
 /// @param lines       number of lines of each record, > 0
 /// @note O(bytes); memory: a few numbers for each part.
@@ -89,8 +88,8 @@ Index read_regular_records(Scanner& in, Index count, const std::function<bool(Sc
                            std::size_t part_bytes = std::size_t{1} << 20, Index lines = 1);
 
 /// As `read_regular_records`, for records that may have no word: each line is a record. The scanner must be
-/// at the beginning of a line of a text without comments; it is then at the beginning of the line after the
-/// last record.
+/// at the beginning of a line of a text without comments; afterwards it is at the beginning of the line after
+/// the last record.
 Index read_regular_lines(Scanner& in, Index count, const std::function<bool(Scanner&, Index)>& read,
                          std::size_t part_bytes = std::size_t{1} << 20);
 
@@ -108,8 +107,8 @@ void read_records(Scanner& in, Index count, const Read& read) {
 }
 
 /// Reads records as `read_regular_records` does. A record is regular only if it begins with a number that is
-/// one more than the number of the record before. Reads nothing if a number could be outside of `least` …
-/// `most`. Adds the numbers to `numbering`, which must be empty.
+/// one more than the number of the record before. Reads nothing if one of `count` such numbers would be
+/// outside of `least` … `most`. Adds the numbers to `numbering`, which must be empty.
 template <class Read>
 Index read_numbered_records(Scanner& in, Index count, IdMap& numbering, const Read& read,
                             std::int64_t least = -(std::int64_t{1} << 40),

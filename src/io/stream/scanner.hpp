@@ -37,7 +37,7 @@ class Scanner {
   /// Returns a scanner of all bytes of the file. Other scanners skip the byte order mark of UTF-8; in a
   /// binary file its three bytes may be data.
   [[nodiscard]] Scanner of_all_bytes() const;
-  /// Moves to where another scanner of the same text is, which may have skipped comments. O(1).
+  /// Moves to the position of another scanner of the same text, which may have skipped comments. O(1).
   void move_to(const Scanner& other);
 
   // ---- position
@@ -51,8 +51,8 @@ class Scanner {
   [[nodiscard]] std::string_view all() const noexcept { return text_; }
   /// Returns the character that begins a comment, \0 for none.
   [[nodiscard]] char comment() const noexcept { return comment_; }
-  /// Returns the byte after the beginning of the last comment that was skipped, 0 if there was none. A
-  /// comment that `raw_line` returned was not skipped.
+  /// Returns the position after the first byte of the last skipped comment, 0 if there is none. Comments
+  /// within lines that `raw_line` returned are not skipped.
   [[nodiscard]] std::size_t last_comment() const noexcept { return last_comment_; }
   /// Moves to that byte. O(bytes moved).
   void seek(std::int64_t byte);
@@ -74,12 +74,12 @@ class Scanner {
     skip_blanks();
     return at_break();
   }
-  /// Takes the next word, on any line; `what` names it in the error at the end of the file.
+  /// Takes the next word, on any line; `what` names the word in the error at the end of the file.
   std::string_view word(std::string_view what);
   /// Returns the next word without taking it; empty at the end of the file.
   std::string_view peek_word();
   /// Takes the next word if all of it is a plain number in the range of T; otherwise returns false and does
-  /// not take it. Reads each byte once; `word` and a parser read it twice.
+  /// not take it. Reads each byte once; `word` and a parser would read each byte twice.
   template <class T>
   bool take_number(T& value);
   /// As `take_number`, for a finite real number. Takes a number that is not finite as well, but returns
@@ -133,7 +133,7 @@ class Scanner {
     while (text_[position_] == ' ') ++position_;  // a zero byte ends the text
     return text_[position_] > ' ' && text_[position_] != comment_;
   }
-  /// Skips spaces and line feeds; returns as `skip_spaces`.
+  /// Skips spaces and line feeds; returns whether a word follows at once.
   bool skip_to_word() {
     while (!skip_spaces()) {
       if (text_[position_] != '\n') return false;

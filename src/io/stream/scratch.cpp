@@ -36,14 +36,15 @@ namespace {
 constexpr const char* kLock = "lock";
 constexpr std::size_t kDigits = 16;
 
-/// Number of locked scratch folders. Those beyond `descriptors_for_locks` are not locked, and no other
-/// process removes them.
+/// Number of locked scratch folders. Folders beyond `descriptors_for_locks` are not locked; other processes
+/// remove these only if empty.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): descriptors are the process's
 std::atomic<std::size_t> locks_held = 0;
 
 // ---- folders that a signal handler removes
 
-/// Paths of scratch folders, allocated one by one. The function that takes a path out of its slot owns it.
+/// Paths of scratch folders, allocated one by one. A function that takes a path out of its slot owns the
+/// path.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing else
 std::array<std::atomic<char*>, 1024> unfinished{};
 
@@ -67,7 +68,7 @@ void forget(int slot) noexcept {
 
 // ---- folders
 
-/// Places of scratch folders that are not beside their outputs, by the folder of the outputs.
+/// Maps a folder of outputs to the place of their scratch folders, if that is elsewhere.
 std::map<fs::path, fs::path>& other_places() {
   static std::map<fs::path, fs::path> places;
   return places;
@@ -88,7 +89,7 @@ bool is_scratch_name(std::string_view name) {
          name.substr(kPrefix.size(), kDigits).find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
-/// Makes `lock` in a folder and locks it. Returns false if a process that cleans up has removed the folder.
+/// Makes the file `lock` in a folder and locks it. Returns false if another process is removing the folder.
 bool lock_new(const fs::path& folder, Descriptor& lock) {
   lock = Descriptor(folder / kLock, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW, 0600);
   if (!lock.is_open()) return errno != ENOENT;
@@ -97,9 +98,8 @@ bool lock_new(const fs::path& folder, Descriptor& lock) {
   return ::fstat(lock.get(), &status) != 0 || status.st_nlink > 0;
 }
 
-/// Removes the files that this program puts into a scratch folder, with only system functions that a signal
-/// handler may call. The lock goes last: a folder without a lock looks like the folder of a process that has
-/// just begun.
+/// Removes the files that this program puts into a scratch folder; safe in a signal handler. Removes the lock
+/// last: a folder without a lock looks like the folder of a process that has just begun.
 void remove_files_of(const Descriptor& folder) noexcept {
   for (const char* const name : {"new", "old", "lock"}) ::unlinkat(folder.get(), name, 0);
 }
@@ -135,12 +135,13 @@ void remove_if_dead(const Descriptor& parent, const std::string& name, bool is_i
   } else if (errno != ENOENT) {
     return;
   }
-  // a folder without a lock belongs to a process that has just begun, or that died at that moment; it is
-  // removed only if it is empty
+  // a folder without a lock belongs to a process that has just begun, or that died at that moment; the folder
+  // is removed only if it is empty
   ::unlinkat(parent.get(), name.c_str(), AT_REMOVEDIR);
 }
 
-/// Removes a scratch folder of this process, as a signal handler may. Returns whether it is gone.
+/// Removes a scratch folder of this process; safe in a signal handler. Returns whether the folder was
+/// removed.
 bool remove_own(const char* path) noexcept {
   remove_files_of(Descriptor(::open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)));
   return ::rmdir(path) == 0;

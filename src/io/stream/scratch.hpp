@@ -9,8 +9,8 @@
 namespace meshorder {
 
 /// A folder beside an output for unfinished files: `.meshorder-DIGITS.new`, of mode 700, with a name that
-/// nobody can guess. Its file `lock` is locked (`flock`) as long as its owner lives, also on other machines
-/// that share the disk. The folder holds the new file, and the old one while files are put in place
+/// nobody can guess. Its file `lock` is locked (`flock`) while its process lives; other machines that share
+/// the disk see the lock. The folder holds the new file, and the old one while files are put in place
 /// (`put_in_place`). Unfinished outputs are kept nowhere else.
 class Scratch {
  public:
@@ -24,7 +24,7 @@ class Scratch {
   Scratch& operator=(Scratch&&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-  /// Returns the path of a file in it.
+  /// Returns the path of a file in the folder.
   [[nodiscard]] std::filesystem::path file(std::string_view name = kNew) const { return path_ / name; }
 
   // contents besides the lock
@@ -37,8 +37,8 @@ class Scratch {
   int slot_ = -1;
 };
 
-/// From now on, scratch folders of outputs in `folder` are made in `place`, in the same file system. For a
-/// process that may write nowhere else. Call it while there is one thread.
+/// Puts later scratch folders of outputs in `folder` into `place`, which must be in the same file system. For
+/// a process that may write only to `place`. Call it while there is one thread.
 void keep_scratches_in(const std::filesystem::path& place, const std::filesystem::path& folder);
 
 /// Returns where scratch folders of outputs in a folder are made: in the folder itself, unless
@@ -47,8 +47,8 @@ std::filesystem::path place_of_scratches(const std::filesystem::path& folder);
 
 /// Removes the scratch folders that dead processes of this user left in a folder; for commands that write
 /// there. Only the first call for a folder in a process does this. Removes only folders that have the name of
-/// a scratch folder and whose `lock` is free, and in them only `new`, `old` and `lock`; follows no links.
-/// Files that cannot be removed stay.
+/// a scratch folder and are empty or whose `lock` is free, and in them only `new`, `old` and `lock`; follows
+/// no links. Files that cannot be removed stay.
 void remove_dead_scratches(const std::filesystem::path& folder);
 
 /// Removes all scratch folders of this process. For a signal handler that ends the process: it calls only
@@ -58,7 +58,7 @@ void remove_unfinished_outputs() noexcept;
 /// A folder for temporary files that only this user can read; the destructor removes it and its content.
 class PrivateFolder {
  public:
-  /// Throws InputError if it cannot be made.
+  /// Throws InputError if the folder cannot be made.
   PrivateFolder();
   ~PrivateFolder();
   PrivateFolder(const PrivateFolder&) = delete;

@@ -7,7 +7,8 @@ namespace {
 constexpr std::string_view kBlanks = " \t\f\v";
 constexpr std::string_view kLineEnds = "\r\n";
 
-/// Returns the position of the first byte that is neither blank nor line end; if none, the size of the text.
+/// Returns the first position ≥ `from` of a byte that is neither blank nor line end; else the size of the
+/// text.
 std::size_t first_mark(std::string_view text, std::size_t from) {
   while (from < text.size() && (kBlanks.find(text[from]) != std::string_view::npos ||
                                 kLineEnds.find(text[from]) != std::string_view::npos)) {
@@ -46,7 +47,7 @@ std::string comments_before(std::string_view text, char comment) {
 }
 
 std::string comments_after(std::string_view text, char comment) {
-  // goes up while the lines are blank or comments
+  // steps back over lines that are blank or comments
   std::size_t begin = text.size();
   std::size_t end = text.size();
   while (end > 0) {

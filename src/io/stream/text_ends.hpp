@@ -16,7 +16,7 @@ std::string_view without_byte_order_mark(std::string_view text);
 
 // Comments are kept for the writer.
 
-/// Returns, verbatim, the lines up to the last comment before the first word; empty if there is none.
+/// Returns verbatim all lines up to the last comment before the data; empty if no comment precedes the data.
 std::string comments_before(std::string_view text, char comment);
 
 /// Returns the comments at the end of a text, verbatim: all lines from the first comment after the data.

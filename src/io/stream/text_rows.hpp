@@ -12,8 +12,8 @@
 
 namespace meshorder {
 
-/// Writes rows of text, made on all threads, in their order; one of the threads writes while the others make
-/// the next rows. The bytes do not depend on the number of threads.
+/// Makes rows of text on all threads and writes them in order; one thread writes while the others make the
+/// next rows. The bytes do not depend on the number of threads.
 ///
 /// @param rows  `rows(text, begin, end)` appends rows begin … end−1
 /// @note Memory: 1 MB or so for each thread.
@@ -27,7 +27,7 @@ void write_rows(OutputFile& out, Index count, const Row& row) {
   });
 }
 
-/// Writes `count` numbers as rows, `in_line` in each; fewer than 2³¹ rows.
+/// Writes `count` numbers in rows of `in_line`; there must be fewer than 2³¹ rows.
 ///
 /// @param number  `number(text, before, i)` appends `before` and number i
 template <class Number>

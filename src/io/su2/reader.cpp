@@ -56,7 +56,8 @@ class Su2Reader {
  private:
   // ---- lines
 
-  /// Sets keyword and value from the next line without taking it. Returns false for a comment or empty line.
+  /// Sets `keyword_` and `value_` from the next line without taking it. Returns false for a comment or empty
+  /// line.
   bool find_keyword() {
     const std::string_view line = in_.peek_line();
     const std::string_view content = trimmed(line.substr(0, line.find(kComment)));
@@ -118,7 +119,7 @@ class Su2Reader {
     metadata_->sections.push_back({part});
   }
 
-  /// Takes the number of items, of at least `min_bytes` each, from the front of a keyword's value.
+  /// Takes the number of items from the front of `value_`; fails if the file lacks `min_bytes` for each item.
   Index take_count(std::int64_t min_bytes) {
     std::string_view rest = value_;
     const Index count = in_.checked_count(
@@ -146,7 +147,7 @@ class Su2Reader {
     }
   }
 
-  /// Reads lines, each with a marker's name, a point and its place in the box.
+  /// Reads lines, each of a marker's name, a point and the point's place in the box.
   void read_surface_points() {
     if (!has_points_) in_.fail(keyword_ + "= comes before NPOIN=", "the points must come first");
     keep_lines();

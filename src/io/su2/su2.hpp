@@ -6,8 +6,8 @@
 // Format: the SU2 project's documentation, "Mesh File", https://su2code.github.io/docs_v7/Mesh-File/. Types
 // and nodes of elements are VTK's. The first triangle of a wedge faces outward, as in SU2's own list of the
 // faces of a prism (Common/src/geometry/primal_grid/CPrism.cpp, SU2 7.0.8) and in old versions of VTK. Gmsh
-// writes its own order, in which that triangle faces inward. When SU2 reads a mesh, it turns elements with a
-// negative volume round.
+// writes its own order, in which that triangle faces inward. When SU2 reads a mesh, it reorients elements
+// with a negative volume.
 
 #include "io/format.hpp"
 
@@ -57,15 +57,15 @@ struct Su2Metadata final : FormatMetadata {
   };
   struct FileSection {
     SectionKind part;
-    std::string text = {};      ///< the name of a marker; the lines that are kept as they are
+    std::string text = {};      ///< the name of a marker, or the lines that are kept as they are
     std::string comments = {};  ///< the lines between MARKER_TAG= and MARKER_ELEMS=
     std::vector<SurfacePoint> surface_points = {};
   };
   std::vector<FileSection> sections;    ///< sections in the order of the file
   std::vector<std::string> keywords;    ///< keywords of the lines that are kept as they are
   bool counts_physical_points = false;  ///< NPOIN= gives a second number
-  bool numbers_elements = false;  ///< lines of elements end with their number, from 0; the next two say the
-                                  ///< same for points and for elements of markers
+  bool numbers_elements = false;  ///< lines of elements end with the element's number, from 0; the next two
+                                  ///< say the same of points and of markers' elements
   bool numbers_points = false;
   bool numbers_marker_elements = false;
   bool wedges_face_inward = false;  ///< whether the first triangle of wedges faces inward, as in Gmsh's files
@@ -75,14 +75,14 @@ struct Su2Metadata final : FormatMetadata {
                                                             std::span<const Index> cells) const override;
 };
 
-/// Returns a marker's name as a label, 0 if it is not a label: "12" and "-3" are labels, "012" is not.
+/// Returns a marker's name as a label; 0 if the name is not a label: "12" and "-3" are labels, "012" is not.
 std::int64_t label_of_name(std::string_view name);
 
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
-/// Returns the places of the cells in a file: cells of the highest dimension, then marker by marker. `blocks`
-/// receives the first cell of each of these groups.
+/// Returns the cells' places in a file: cells of the highest dimension, the markers' cells, marker by marker,
+/// then cells that are not written. `blocks` receives the first place of each of these groups.
 Permutation places(const Mesh& mesh, std::vector<Index>& blocks);
 
 }  // namespace meshorder::su2

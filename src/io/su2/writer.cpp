@@ -154,7 +154,7 @@ const ElementKind* kind_of(Shape shape, int nodes) {
   return found == kElementKinds.end() ? nullptr : &*found;
 }
 
-/// Returns whether a shape is an element of the highest dimension, 2 or 3, or of the boundary.
+/// Returns whether SU2 has the type and its dimension is the mesh's highest, 2 or 3, or one less.
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
   const int highest = mesh.cells.highest_dimension();
   return kind_of(shape, vertices) != nullptr && highest >= 2 && dimension(shape) >= highest - 1;

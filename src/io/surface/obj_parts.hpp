@@ -15,9 +15,9 @@
 /// Declarations shared by the reader and the writer of OBJ files.
 namespace meshorder::obj {
 
-/// A kind of statement, such as usemtl, and its array on cells. A statement applies to the cells up to the
-/// next one of its kind. The array has the number of each cell's statement, 0 if there is none; the metadata
-/// has the names by number. Smoothing groups keep the file's numbers.
+/// A kind of statement, such as usemtl, and its array on cells. A statement applies until the next of its
+/// kind. The array has the number of each cell's statement, 0 if there is none; the metadata has the names by
+/// number. Smoothing groups keep the file's numbers.
 struct State {
   std::string_view keyword;
   std::string_view array;
@@ -37,8 +37,8 @@ inline constexpr std::size_t kSmoothing = 2;
 /// Array of the homogeneous coordinate, for vertices that have one.
 inline constexpr std::string_view kWeight = "obj:weight";
 
-/// Returns the name of an array of cells with `corners` corners: for each corner the position, from 0, in the
-/// list of texture coordinates (or normals). Reordering leaves these lists unchanged.
+/// Returns the name of an array on cells with `corners` corners. The array has each corner's position, from
+/// 0, in the list of texture coordinates (or normals). Reordering leaves these lists unchanged.
 inline std::string corner_array(std::string_view what, Index corners) {
   return "obj:" + std::string(what) + std::to_string(corners);
 }
@@ -49,8 +49,8 @@ struct ObjMetadata : FormatMetadata {
   std::string texture;    ///< the lines vt
   std::string normals;    ///< the lines vn
   std::array<std::map<std::int32_t, std::string>, kStates.size()> names;
-  /// Names of groups in a statement g in alphabetical order, with spaces between; the same as in the file.
-  /// Only statements whose names are not in alphabetical order.
+  /// For statements g not in alphabetical order: the names as in the file, by the names in alphabetical
+  /// order. Spaces separate the names.
   std::map<std::string, std::string> group_statements;
 
   [[nodiscard]] std::vector<std::string> contents() const override {

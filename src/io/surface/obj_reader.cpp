@@ -22,7 +22,7 @@
 namespace meshorder::obj {
 namespace {
 
-/// The name that applies to each cell.
+/// Names, and the name of each cell.
 struct Named {
   std::vector<std::string> names;  ///< in the order of first appearance; cells count them from 1
   std::unordered_map<std::string, std::int32_t> number_of;
@@ -55,8 +55,8 @@ std::optional<std::int32_t> as_integer(const std::string& text) {
   return value;
 }
 
-/// Returns the numbers of names: their values if all are integers, else their alphabetical ranks, which do
-/// not depend on the order of cells.
+/// Returns the names by number: by their values if all are integers, else by alphabetical ranks, which do not
+/// depend on the order of cells.
 std::map<std::int32_t, std::string> numbered(const Named& named, bool are_numbers) {
   std::map<std::int32_t, std::string> result;
   const bool some_without = std::count(named.of_cell.begin(), named.of_cell.end(), 0) > 0;
@@ -97,11 +97,11 @@ struct List {
   std::int64_t line_ahead = 0;
 };
 
-/// A line. A vertex, a face of at most four corners, a texture coordinate and a normal are parsed if they
-/// hold plain numbers and nothing else.
+/// A line. Vertices, faces of at most four corners, texture coordinates and normals are parsed if they hold
+/// plain numbers and nothing else.
 struct Line {
   enum class Kind : std::uint8_t { vertex, texture, normal, face, other };
-  using Corner = std::array<Index, 3>;  ///< v, vt and vn, counted from 1; 0 if it has none
+  using Corner = std::array<Index, 3>;  ///< v, vt and vn, counted from 1; 0: none
 
   std::int64_t byte = 0;    ///< position of the line's first word
   std::int64_t number = 0;  ///< number of the line in the file
@@ -152,7 +152,7 @@ bool take_corners(Scanner& in, Line& line) {
                      });
 }
 
-/// Parses a line of any kind but `other`; returns false for all other lines.
+/// Parses a line; returns false if its kind is `other`.
 bool parse_plain(Scanner& in, Line& line) {
   const std::string_view keyword = in.peek_word();
   in.move_on(keyword.size());
@@ -219,7 +219,7 @@ class Reader {
         kPartBytes);
     are_regular_ = count > 0;
     for (const Line& line : std::span(lines_).first(static_cast<std::size_t>(count))) {
-      if (line.byte < scanner_.byte() || add(line)) continue;  // the first: part of a joined line
+      if (line.byte < scanner_.byte() || add(line)) continue;  // in a joined line, or added
       scanner_.move_to(scanner_.at(line.byte, line.number));
       read_statement();
     }
@@ -227,7 +227,7 @@ class Reader {
     return are_regular_;
   }
 
-  /// Returns false if the line must be read as a statement.
+  /// Adds a line; returns false if it must be read as a statement.
   bool add(const Line& line) {
     switch (line.kind) {
       case Line::Kind::vertex:
@@ -388,7 +388,7 @@ class Reader {
     ++list.count;
   }
 
-  /// Returns the position, from 0, for a number that counts from 1, or back from the last if negative.
+  /// Returns the position, from 0, for a number that counts from 1 or, if negative, back from the last.
   Index place(std::string_view text, List& list) {
     const auto number = parse_integer<Index>(scanner_, text, "a number of " + std::string(list.name));
     if (number < 0 && -static_cast<std::int64_t>(number) <= list.count) return list.count + number;
@@ -405,7 +405,7 @@ class Reader {
                   fmt::format("there are {} so far, counted from 1 or back from -1", list.count));
   }
 
-  /// Checks that numbers that point ahead stay within the list.
+  /// Throws unless numbers that point ahead stay within the list.
   void check_ahead(const List& list) const {
     if (list.highest_ahead < list.count) return;
     throw InputError(Location{scanner_.file(), list.line_ahead, -1},

@@ -158,8 +158,8 @@ class ObjWriter {
     return {groups_.data() + group_offsets_[cell], groups_.data() + group_offsets_[cell + 1]};
   }
 
-  /// Returns a set's name as one word, as names of groups must be. A backslash at its end would join the next
-  /// line to it, and becomes an underscore.
+  /// Returns a set's name as one word, as names of groups must be. Backslashes at its end, which would join
+  /// the next line to it, become underscores.
   static std::string one_word(const EntitySet& set) {
     std::string name = plain_name(set.name.empty() ? "unnamed" : set.name, " ");
     for (std::size_t at = name.size(); at > 0 && name[at - 1] == '\\'; --at) name[at - 1] = '_';
@@ -244,7 +244,7 @@ class ObjWriter {
     out_.write(text.view());
   }
 
-  /// Returns the names of groups, as a statement of the file that the mesh came from has them.
+  /// Returns the names of groups, ordered as in the file if a statement there has these names.
   [[nodiscard]] std::string names_in_statement(std::span<const Index> groups) const {
     std::string names;
     Index previous = -1;  // a set may hold a cell twice

@@ -247,7 +247,8 @@ Mesh read_off(const FilePath& path, Notes&) {
 
 // ---- writing
 
-/// Returns whether OFF holds a cell. Other readers take faces only; a mesh from OFF keeps vertices and lines.
+/// Returns whether OFF holds a cell. Other readers expect only faces; a mesh from OFF keeps vertices and
+/// lines.
 bool off_holds(const Mesh& mesh, Shape shape, int vertices) {
   if (shape == Shape::polygon) return vertices >= 3;
   const int least = mesh.format == "off" ? 0 : 2;
@@ -307,7 +308,7 @@ void note_losses(const Mesh& mesh, const Content& content, Notes& notes) {
   note_metadata_unsupported(mesh, "OFF", notes);
 }
 
-/// Appends a real colour with a decimal point, as 1 and 1.0 differ in OFF.
+/// Appends a colour; real numbers have a point, as 1 and 1.0 differ in OFF.
 void add_color(Text& row, std::span<const double> color, bool integers) {
   for (const double x : color) {
     std::string text = fmt::format("{}", x);

@@ -117,7 +117,7 @@ void check_cells_element(const Scanner& scanner, const Element& element) {
   }
 }
 
-/// Returns whether the name sounds like that of numbers of vertices or faces: "vertex1", "face_index".
+/// Returns whether the name suggests numbers of vertices or faces: "vertex1", "face_index".
 bool sounds_like_index(const Property& property) {
   if (!is_integer(property.type.type)) return false;
   const std::string name = "_" + property.name;
@@ -157,7 +157,7 @@ void leave_out_dependent(Element& element, const std::map<Index, std::string>& k
       fmt::format("it has as many rows as the element {}, to which they could belong", same->second);
 }
 
-/// Fails if a required property is missing, or if two properties have the same name.
+/// Fails if properties are missing or contradict each other.
 void check_element(const Scanner& scanner, const Element& element) {
   std::set<std::string_view> names;
   for (const Property& property : element.properties) {
@@ -267,7 +267,7 @@ void read_header(Scanner& scanner, PlyMetadata& header) {
 
 // ---- body
 
-/// Reads the numbers of the body from a scanner of its text: its own or another.
+/// Reads numbers of the body, from its own scanner or another of the same text.
 struct BodyReader : NumberReader {
   using NumberReader::NumberReader;
 
@@ -284,7 +284,7 @@ struct BodyReader : NumberReader {
     return with_type(type, [&](auto zero) { return static_cast<T>(number<decltype(zero)>(in, what)); });
   }
 
-  /// Reads the length of a list, at most the number of bytes that are left.
+  /// Reads the length of a list; fails if it exceeds the bytes that are left.
   Index list_length(Scanner& in, const Property& property) const {
     const auto length = number_as<std::int64_t>(in, property.count_type.type, "the length of a list");
     if (length < 0 || length > in.bytes_left() || length > kMaxIndex) {
@@ -337,7 +337,7 @@ struct Column {
   }
 };
 
-/// Returns the minimum number of bytes (in text: digits and blanks) of an item of the element.
+/// Returns the least bytes of an item; in text, a digit and a blank for each property.
 std::int64_t min_bytes(const Element& element, const BodyReader& body) {
   std::int64_t bytes = 0;
   for (const Property& property : element.properties) {
@@ -406,7 +406,7 @@ class Reader {
   }
 
   /// Reads rows of a text on all threads, up to the first row that is not a line of plain numbers or has more
-  /// than four vertices. Reads nothing of an element with other lists. Returns how many it read.
+  /// than four vertices. Reads nothing of an element with other lists. Returns the number of rows read.
   Index read_plain_rows(const Element& element, std::vector<Column>& columns) {
     const bool has_few_lists =
         element.role != Role::strips && element.role != Role::rows_of_faces &&
@@ -527,8 +527,7 @@ class Reader {
     return true;
   }
 
-  /// Reads the triangles of strips, separated by −1. Turns every second triangle round: all then face one
-  /// way.
+  /// Reads the triangles of strips, separated by −1. Reverses every second triangle: all then face one way.
   bool read_strip(const Property& property) {
     std::array<Index, 3> last{};
     int known = 0;  // corners of the strip, of which three make a triangle

@@ -43,7 +43,7 @@ struct ArraySource {
   std::vector<Index> row_of;  ///< the row of each vertex or cell, −1 for none; empty if row i belongs to i
 };
 
-/// A property to be written; without a source its numbers are coordinates or vertices of cells.
+/// A property to be written; without a source its numbers come from points, cells or rows.
 struct Column {
   Property property;
   std::vector<ArraySource> sources;  ///< several for a list whose lengths differ
@@ -62,7 +62,7 @@ TypeWord word_of(const Values& values) {
   return {std::string(ply::kTypeWords[type].front()), static_cast<Type>(type)};
 }
 
-/// Returns the type in which 64-bit integers are written: PLY has no such type.
+/// Returns the type to write 64-bit integers in, which PLY lacks.
 TypeWord word_for_wide(const Values& values) {
   const std::vector<double> numbers = as_reals(values);
   const bool fit = std::all_of(numbers.begin(), numbers.end(), [](double x) {
@@ -259,8 +259,7 @@ class Columns {
     return array.components == 1 && rows_inside(array) == index_size(table_.items);
   }
 
-  /// Widens, if needed, the types in the list of a cell's vertices, to hold every vertex and the length of
-  /// every list.
+  /// Widens the types in the list of a cell's vertices if they cannot hold every vertex or list length.
   [[nodiscard]] Column widened(Column column) const {
     if (table_.element.role == Role::vertices) return column;
     const auto holds = [&](const TypeWord& type, std::int64_t number) {
@@ -322,7 +321,7 @@ class Columns {
     use(array);
   }
 
-  /// Adds a note once, also if it concerns several elements.
+  /// Adds a note once, even if it concerns several elements.
   void note(const std::string& text) {
     if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
   }
@@ -363,7 +362,7 @@ void write_header(OutputFile& out, Encoding encoding, const ply::PlyMetadata* me
   out.write("end_header\n");
 }
 
-/// Writes the body's numbers in the encoding, each line of text with blanks between them.
+/// Writes the body's numbers in the encoding; blanks separate the numbers of a text line.
 class NumberWriter {
  public:
   NumberWriter(Text& out, Encoding encoding) : out_(out), encoding_(encoding) {}
@@ -373,7 +372,7 @@ class NumberWriter {
     ply::with_type(type, [&](auto zero) { put(static_cast<decltype(zero)>(value)); });
   }
 
-  /// Writes a coordinate; text keeps all its digits, whatever its type.
+  /// Writes a coordinate; text keeps all digits, whatever the type.
   void coordinate(Type type, double value) {
     if (encoding_ == Encoding::ascii) return put(value);
     if (type == Type::float32) rounded_ = rounded_ || static_cast<double>(static_cast<float>(value)) != value;
@@ -451,7 +450,7 @@ void write_item(NumberWriter& to, const Mesh& mesh, const Table& table, Index it
   to.end_line();
 }
 
-/// Returns whether PLY holds a cell. Other readers take faces only; a mesh from PLY keeps all its cells.
+/// Returns whether PLY holds a cell. Other readers expect only faces; a mesh from PLY keeps all its cells.
 bool ply_holds(const Mesh& mesh, Shape shape, int vertices) {
   if (shape == Shape::polygon) return vertices >= 3;
   if (vertices != corners(shape, 0)) return false;

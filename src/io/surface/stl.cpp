@@ -49,8 +49,7 @@ struct StlMetadata : FormatMetadata {
 
 // ---- reading
 
-/// Gives points numbers by first appearance; equal points get the same number. A hash table with open
-/// addressing.
+/// A hash table, with open addressing, that numbers points by first appearance; equal points share a number.
 class PointTable {
  public:
   explicit PointTable(std::vector<Point>& points) : points_(points), slots_(1024, -1) {}
@@ -129,7 +128,7 @@ struct Builder {
   }
 };
 
-/// Returns the size in bytes that a binary file has by its own count; −1 if it is too short for a count.
+/// Returns the bytes that a binary file should have by its own count; −1 if it is too short for a count.
 std::int64_t promised_bytes(const Scanner& scanner) {
   const std::string_view all = scanner.all();
   if (all.size() < kHeaderBytes + 4) return -1;

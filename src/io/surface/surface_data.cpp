@@ -13,7 +13,7 @@ namespace {
 
 bool is_usable(const DataArray* array) { return array && array->is_dense() && !are_texts(array->values); }
 
-/// Returns the columns row by row: the first of each column, then the second, …
+/// Returns the columns row by row: the first value of each, then the second, …
 std::vector<double> interleaved(const std::vector<const DataArray*>& columns, Index rows) {
   std::vector<double> result(columns.size() * static_cast<std::size_t>(rows));
   for (std::size_t k = 0; k < columns.size(); ++k) {

@@ -10,9 +10,9 @@
 
 namespace meshorder {
 
-/// Normals, colours and texture coordinates: the arrays of a surface for which OFF, OBJ and PLY have fields.
-/// A mesh holds each as one array of several components ("normal") or, as PLY does, as arrays of one
-/// component ("nx", "ny", "nz").
+/// A kind of surface array for which OFF, OBJ and PLY have fields: normals, colours or texture coordinates. A
+/// mesh holds it as one array of several components ("normal") or, as PLY does, as arrays of one component
+/// ("nx", "ny", "nz").
 struct SurfaceVector {
   std::string_view name;
   std::vector<std::string_view> components;

@@ -23,11 +23,11 @@ namespace {
 
 constexpr char kComment = '#';
 
-/// The records of one file, without the points that they name.
+/// The numbers, markers and attributes of one file's records.
 struct Records {
   Index count = 0;
   IdMap numbering;
-  std::vector<std::int64_t> markers;  // one for each record, or none
+  std::vector<std::int64_t> markers;  // empty if the records have none
   std::vector<double> attributes;
   Index attributes_of_each = 0;
 };
@@ -36,7 +36,7 @@ struct ReadContext {
   Notes& notes;
   Mesh mesh = {};
   std::array<Records, 4> parts = {};
-  std::string mark = {};  ///< mark of the file of points
+  std::string mark = {};  ///< mark of the .node file
   std::shared_ptr<TetGenMetadata> metadata = std::make_shared<TetGenMetadata>();
   bool second_order = false;
 };
@@ -113,9 +113,9 @@ void add_number(Scanner& in, IdMap& numbering, std::string_view what) {
     in.fail(fmt::format("{} {} is given twice", what, number), "each must be unique");
 }
 
-/// Reads the records of a file: for each its number, what `read_item(in, i)` reads, attributes and, if
-/// `marked`, a marker. Columns after those that the header gives are left out, as TetGen does, if all records
-/// have equally many.
+/// Reads the records of a file: each has its number, what `read_item(in, i)` reads, attributes and, if
+/// `marked`, a marker. Leaves out further columns that the header does not give, as TetGen does; fails unless
+/// all records have equally many.
 template <class ReadItem>
 void read_items(Scanner& in, File file, bool marked, ReadContext& to, const ReadItem& read_item) {
   Records& part = to.parts[file];
@@ -149,8 +149,8 @@ void read_items(Scanner& in, File file, bool marked, ReadContext& to, const Read
                   kExtensions[file], further));
 }
 
-/// Removes the mark of a mesh's files from `comments`, the comments at the end of a file. Returns the mark;
-/// an empty text if there is none.
+/// Removes the mark from `comments`, which are those at the end of a file. Returns the mark; an empty text if
+/// there is none.
 std::string take_mark(std::string& comments) {
   const std::size_t at = comments.rfind(kMarkBefore);
   if (at == std::string::npos || (at > 0 && comments[at - 1] != '\n')) return {};
@@ -198,9 +198,8 @@ void read_points(Scanner& in, ReadContext& to) {
     }
   });
 
-  // As in TetGen, numbers begin at 0 if the first one is 0, else at 1. If they are not consecutive, they
-  // begin at 0 if any of them is 0: so another order of the points does not change the points that cells
-  // name.
+  // As in TetGen, numbers begin at 0 if the first is 0, else at 1. Numbers that are not consecutive begin at
+  // 0 if any of them is 0: their base does not depend on the order of the points.
   to.metadata->base = part.numbering.id(0) == 0 ? 0 : 1;
   mesh.vertex_ids = part.numbering.ids_unless_from(to.metadata->base);
   if (std::find(mesh.vertex_ids.begin(), mesh.vertex_ids.end(), 0) != mesh.vertex_ids.end())
@@ -217,7 +216,7 @@ void read_points(Scanner& in, ReadContext& to) {
 
 // ---- cells
 
-/// Reads the points of a cell, from the file's order into VTK's.
+/// Reads the points of a cell and puts them in VTK's order.
 void read_cell_points(Scanner& in, const IdMap& points, std::span<const int> places, std::span<Index> cell) {
   std::array<Index, 10> as_given{};
   for (std::size_t k = 0; k < places.size(); ++k) {
@@ -232,7 +231,7 @@ void read_cell_points(Scanner& in, const IdMap& points, std::span<const int> pla
   for (std::size_t k = 0; k < places.size(); ++k) cell[k] = as_given[places[k]];
 }
 
-/// Reads all cells of a file after its header; every line has `nodes` points, attributes and a marker.
+/// Reads all cells of a file after its header; each has `nodes` points, attributes and a marker if `marked`.
 void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, ReadContext& to) {
   const std::span<const int> order = places(file, nodes, false);
   const Index first = to.mesh.cells.size();
@@ -242,7 +241,7 @@ void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, Rea
   });
 }
 
-/// Makes a label of TetGen's region attribute, one whole number for each cell. Other attributes stay.
+/// Turns TetGen's region attribute, a 32-bit integer for each cell, into markers. Other attributes stay.
 void take_regions_as_markers(Records& part) {
   using Limits = std::numeric_limits<std::int32_t>;
   const bool regions = part.attributes_of_each == 1 &&
@@ -280,7 +279,7 @@ void read_ele(Scanner& in, ReadContext& to) {
       "remove them, or let TetGen write the file without -nn");
 }
 
-/// Reads faces or edges. Their header lacks the number of points of a cell; the first record shows it.
+/// Reads faces or edges. Their header lacks the number of points per cell; the first record shows it.
 void read_boundary(Scanner& in, File file, ReadContext& to) {
   const auto [records, has_markers] = header<2>(in, {0, 0});
   const bool marked = checked_markers(in, has_markers);
@@ -322,8 +321,8 @@ std::vector<std::array<Index, 2>> edges_of_nodes(const Mesh& mesh, Index tetrahe
   return result;
 }
 
-/// TetGen 1.5 with -f writes the second-order nodes of faces by opposite edges, otherwise in VTK's order. The
-/// faces were read as if in VTK's order. Finds the order by the edges of the tetrahedra, and corrects it.
+/// Puts the second-order nodes of faces in VTK's order: the tetrahedra's edges show which order the file has.
+/// TetGen 1.5 with -f lists the nodes by opposite edges, otherwise in VTK's order.
 void settle_face_order(ReadContext& to) {
   const Index tetrahedra = to.parts[kEle].count;
   const Index end = tetrahedra + to.parts[kFace].count;

@@ -19,7 +19,7 @@
 
 namespace meshorder::tetgen {
 
-/// The files of one mesh: points, and the files of cells beside it.
+/// The files of one mesh: points, tetrahedra (or triangles), faces and edges.
 enum File : std::uint8_t { kNode, kEle, kFace, kEdge };
 inline constexpr std::array<std::string_view, 4> kExtensions{".node", ".ele", ".face", ".edge"};
 inline constexpr std::array kFiles{kNode, kEle, kFace, kEdge};
@@ -48,8 +48,7 @@ inline constexpr std::array<int, 10> kTetrahedron{0, 1, 2, 3, 6, 7, 9, 5, 8, 4};
 inline constexpr std::array<int, 6> kTriangleOpposite{0, 1, 2, 5, 3, 4};
 inline constexpr std::array<int, 6> kTriangle{0, 1, 2, 3, 4, 5};
 
-/// Returns the positions of the nodes in a line, as in these tables, for cells of `nodes` nodes in a file of
-/// that kind.
+/// Returns one of these tables, for cells of `nodes` nodes in a file of that kind.
 inline std::span<const int> places(File file, int nodes, bool faces_name_opposite_edges) {
   if (nodes == 4 || nodes == 10) return {kTetrahedron.data(), static_cast<std::size_t>(nodes)};
   const bool opposite = file == kEle || (file == kFace && faces_name_opposite_edges);

@@ -22,7 +22,7 @@ namespace meshorder::tetgen {
 
 namespace {
 
-/// Returns whether a .poly or .smesh file has no points and refers to the points of the .node file.
+/// Returns whether a .poly or .smesh file has no points of its own: it then refers to those of .node.
 bool refers_to_points(const FilePath& path) {
   const std::string text = path.is_empty() ? std::string() : path.read();
   std::string_view lines = text;
@@ -198,7 +198,7 @@ struct WriteContext {
   [[nodiscard]] std::int64_t vertex_number(Index v) const {
     return vertex_ids ? mesh.vertex_ids[v] : v + std::int64_t{metadata.base};
   }
-  /// Returns the number of the cell at position `place` of its file.
+  /// Returns the number of the cell c, which is at position `place` in its file.
   [[nodiscard]] std::int64_t cell_number(Index c, Index place) const {
     return own_ids && !mesh.cell_ids.empty() ? mesh.cell_ids[c] : place + std::int64_t{metadata.base};
   }

@@ -102,10 +102,10 @@ class Reader {
   struct CellLine {
     std::int64_t material;
     const CellKind* kind;
-    std::array<Index, 8> cell{};  ///< its vertices
+    std::array<Index, 8> cell{};  ///< vertices, in the mesh's order
   };
 
-  /// Reads the line of the cell `id` after its number. Tries `likely` first as the type of the cell.
+  /// Reads the line of the cell `id` after its number. Compares the cell's type with `likely` first.
   CellLine read_cell(Scanner& in, Index id, const CellKind* likely) const {
     CellLine line{.material = in.integer<std::int64_t>("the material of a cell"), .kind = likely};
     const std::string_view name = in.word("the type of a cell");
@@ -147,7 +147,7 @@ class Reader {
     append_cells(cells, first->shape, first->nodes, count);
     materials.resize(static_cast<std::size_t>(count));
     const auto read = [&](Scanner& in, Index c) {
-      const CellLine line = read_cell(in, c, first);  // an error is found again, with the cell's number
+      const CellLine line = read_cell(in, c, first);  // an error is thrown later, with the cell's number
       if (line.kind->nodes > first->nodes) return false;
       materials[c] = line.material;
       cells.shapes[c] = line.kind->shape;
@@ -237,7 +237,8 @@ class Reader {
     for (std::size_t i = 0; i < arrays.size(); ++i) mesh_.data[first + i].values = std::move(arrays[i]);
   }
 
-  /// Takes the number of a line of data; returns the position of its item, `row` if cells have no numbers.
+  /// Takes the number of a line of data and returns the position of this node or cell; `row` if `numbers` is
+  /// null.
   Index place_of_row(const IdMap* numbers, Index row, std::string_view item) {
     const Index id = number(in_, "the number of a line of data");
     const Index place = numbers == nullptr ? row : numbers->find(id);
@@ -271,7 +272,7 @@ class Reader {
     }
   }
 
-  /// Keeps the data of the model. If the model has no data, fails for further text: it could depend on the
+  /// Keeps the data of the model. If the model has no data, fails at further text, which could depend on the
   /// old order.
   void keep_rest() {
     if (in_.at_end()) return;

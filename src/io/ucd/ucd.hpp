@@ -23,7 +23,7 @@ struct CellKind {
   std::string_view name;
   Shape shape;
   int nodes;
-  std::array<int, 8> places;  ///< position in the file's line of each vertex of the cell
+  std::array<int, 8> places;  ///< for each vertex of the cell, its position in the line
 };
 
 inline constexpr std::array kCellKinds{

@@ -61,7 +61,7 @@ class Writer {
  private:
   struct Array {
     const DataArray* array;
-    std::string label;  ///< the line of its label, with the unit
+    std::string label;  ///< the line with the array's label and unit
   };
 
   [[nodiscard]] const std::vector<Array>& arrays_of(Association association) const {
@@ -74,8 +74,8 @@ class Writer {
     return values;
   }
 
-  /// Finds the arrays that the file can hold, and their lines. Labels of cells are written as materials
-  /// instead.
+  /// Finds the arrays that the file can hold, and the lines of their labels. Labels of cells are written as
+  /// materials instead.
   void collect_arrays() {
     DistinctNames of_nodes;
     DistinctNames of_cells;

@@ -26,9 +26,9 @@ constexpr std::size_t kMostNodes = 20;
 /// Returns whether a line begins or ends a dataset: −1 in its first six columns.
 bool is_delimiter(std::string_view line) { return trimmed(line) == "-1" && line.find('-') <= 4; }
 
-/// Returns whether a dataset that is kept verbatim is known to name neither nodes nor elements.
+/// Returns whether a dataset is known to name neither nodes nor elements.
 bool is_harmless(int dataset) {
-  // systems of coordinates, header, units, materials, header of the model, systems of coordinates
+  // coordinate systems, header, units, materials, header of the model, coordinate systems
   constexpr std::array kHarmless{18, kHeader, 164, 1710, 2400, kSystems};
   return std::find(kHarmless.begin(), kHarmless.end(), dataset) != kHarmless.end();
 }
@@ -135,7 +135,7 @@ class UnvReader {
     keep(dataset_, line_);
   }
 
-  /// Records a dataset that is kept as it is, as unknown unless `is_harmless`.
+  /// Records a dataset kept verbatim, as unknown unless `is_harmless`.
   void keep(int dataset, std::int64_t line) {
     const std::string name = fmt::format("dataset {}", dataset);
     if (!is_harmless(dataset)) file_->unknown.push_back(fmt::format("{} (line {})", name, line));
@@ -300,7 +300,7 @@ class UnvReader {
   }
 
   /// Reads groups. Returns false if a member belongs to a part of an assembly, that is, if its last two
-  /// numbers are not 0.
+  /// numbers are not both 0.
   bool read_groups() {
     const auto per_member = static_cast<std::size_t>(numbers_of_member(dataset_));
     const std::size_t groups_before = file_->groups.size();
@@ -350,7 +350,7 @@ class UnvReader {
     return true;
   }
 
-  /// Returns the positions of members; numbers that do not exist are left out and counted in `missing`.
+  /// Returns the positions of members. Adds elements that are not cells to `group`; counts unknown numbers.
   std::vector<Index> positions(const std::vector<Index>& numbers, Association association, Group& group,
                                std::int64_t& missing) const {
     const bool of_nodes = association == Association::vertices;
@@ -489,8 +489,8 @@ class UnvReader {
     }
   }
 
-  /// Makes an array of properties and an array of materials, each if its values differ. Makes the array of
-  /// properties also if all properties are the same number, other than 0 and 1.
+  /// Makes arrays of properties and of materials, each if its values differ; the array of properties also if
+  /// all properties are the same number other than 0 and 1.
   void make_arrays_of_fields() {
     const auto make = [&](std::string_view name, std::int64_t ElementFields::*field) {
       const auto& all = file_->element_fields.different();

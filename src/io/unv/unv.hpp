@@ -31,9 +31,9 @@ inline constexpr int kResults = 2414;
 inline constexpr int kResultsAtNodes = 55;
 inline constexpr int kResultsAtElements = 56;
 inline constexpr int kHeader = 151;    ///< header of the file
-inline constexpr int kSystems = 2420;  ///< systems of coordinates
+inline constexpr int kSystems = 2420;  ///< coordinate systems
 
-// Codes of the kinds of members of groups.
+// Codes of the kinds of group members.
 inline constexpr std::int64_t kNodeCode = 7;
 inline constexpr std::int64_t kElementCode = 8;
 
@@ -158,17 +158,17 @@ struct FoundResults {
   std::string all = {};                    ///< all lines
 };
 
-/// Takes the records before the values; returns nullopt if the values are neither at nodes nor at elements,
-/// or are of an unknown type.
+/// Takes the records before the values; returns nullopt for faulty records, and for values of an unknown
+/// place or type.
 std::optional<Results> read_results_header(Scanner& in, int dataset);
 
 /// Returns the values as an array; nullopt if there are no values, or if an item is unknown or comes twice.
 std::optional<DataArray> array_of(const FoundResults& found, const IdMap& items);
 
-/// Returns the numbers of the systems of coordinates in a dataset 2420, except global systems.
+/// Returns the numbers of the coordinate systems in a dataset 2420 that are not global.
 std::vector<std::int64_t> local_systems(std::string_view text);
 
-/// Parses a real number as Fortran writes it: 1.5D-3, 1.5E-3, 1.5-103. Throws an Error at the scanner's line.
+/// Parses a real number as Fortran writes it: 1.5D-3, 1.5E-3, 1.5-103. Throws InputError at the line of `at`.
 double real_of(const Scanner& at, std::string_view word, std::string_view what);
 
 /// Returns whether a whole number leaves a blank in its ten columns. Readers can then split the line at

@@ -42,8 +42,8 @@ class Lines {
   }
 
   /// Adds a number with `digits` digits after the point, right-aligned in `digits` + 8 columns (+ 9 for 16
-  /// digits), or in more columns if it is longer. Returns whether this text reads back as the same number. If
-  /// it does not and `exact` is true, adds the number with 16 digits instead, which are always enough.
+  /// digits), or in more columns if it is longer. Returns whether `digits` digits read back as the same
+  /// number. If not and `exact` is true, adds the number with 16 digits instead, which are always enough.
   bool real(double value, int digits, char exponent = 'E', bool exact = false) {
     const auto width = static_cast<std::size_t>(digits < kDigitsOfCoordinates ? digits + 8 : digits + 9);
     char* end = rounded(value, digits);
@@ -280,8 +280,7 @@ class UnvWriter {
     list(numbers);
   }
 
-  /// Takes and returns a free name that groups can have. A line that is the delimiter of datasets would end
-  /// the groups.
+  /// Takes and returns a free name that groups can have. A name equal to the delimiter would end the dataset.
   static std::string name_for(const std::string& given, DistinctNames& taken) {
     const std::string name = plain_name(trimmed(given), " ");  // Gmsh reads only the first word of a name
     if (name.empty()) return taken.take("group");
@@ -318,8 +317,7 @@ class UnvWriter {
     if (begun) lines_.delimiter();
   }
 
-  /// Returns the number of the dataset in which the file has its groups; if the file has no groups, the
-  /// number that Gmsh's files have.
+  /// Returns the number of the dataset with the groups of the file; without groups, the one that Gmsh writes.
   [[nodiscard]] int dataset_of_groups() const {
     const auto own = std::find_if(file_.sections.begin(), file_.sections.end(),
                                   [](const Dataset& section) { return section.part == DatasetKind::groups; });
@@ -350,7 +348,7 @@ class UnvWriter {
     lines_.delimiter();
   }
 
-  /// Writes rows: the number of the node or element and, if not 0, `components` on a line, then the values.
+  /// Writes rows: a line with the number of the node or element and, if not 0, `components`; then the values.
   void write_rows(const DataArray& array, const Results& results, std::int64_t components) {
     const FileNumbers& numbers = numbers_.of(array.association);
     const auto width = static_cast<std::size_t>(array.components);

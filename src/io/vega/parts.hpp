@@ -22,7 +22,7 @@ enum class Kind : std::uint8_t { vertices, elements, material, set, region, othe
 struct VegaSection {
   Kind kind = Kind::other;
   std::string comments;            ///< whole lines
-  std::string title;               ///< name of a material; keyword's line of an unknown section
+  std::string title;               ///< name of a material, or first line of an unknown section
   std::vector<std::string> lines;  ///< lines of a material or an unknown section
   std::size_t set = 0;             ///< index of the set in Mesh::sets
   std::string region_set;

@@ -26,7 +26,7 @@ constexpr std::string_view kSeparators = " \t,";
 
 std::string_view without_comment(std::string_view line) { return line.substr(0, line.find('#')); }
 
-/// The lines of a Vega file and, in place, of the files that it includes, without comments and blank lines.
+/// The lines of a Vega file, with included files in place and without comments and blank lines.
 class Lines {
  public:
   explicit Lines(const FilePath& path) : main_(path) { open(path); }
@@ -73,7 +73,7 @@ class Lines {
 
   void include(const std::string& name) {
     if (name.empty()) at().fail("*INCLUDE names no file", "write *INCLUDE and a file name");
-    // beside the file that includes it or, as Vega itself looks, beside the main file
+    // beside the including file, or else, as Vega itself does, beside the main file
     FilePath path = files_.back().path.beside(name);
     if (!path.exists()) path = main_.beside(name);
     if (!may_include(main_, path)) {
@@ -162,7 +162,7 @@ class Reader {
     metadata_->sections.push_back(std::move(section));
   }
 
-  /// Takes the next line that is not a keyword, without its comment; fails if there is none.
+  /// Returns the next line, without its comment and without taking it; fails at a keyword or the end.
   std::string_view data_line(const std::string& what) {
     std::string_view line;
     if (!lines_.peek(line)) {
@@ -285,14 +285,14 @@ class Reader {
     }
   }
 
-  /// Returns whether the lines have no attributes. A Scanner skips form feeds and vertical tabs, which are
-  /// errors here.
+  /// Returns whether there are no attributes, form feeds or vertical tabs. A Scanner skips the latter two,
+  /// which are errors here.
   bool is_plain(const Header& header) {
     const bool has_columns = header.columns != decltype(header.columns){};
     return !has_columns && !has_any_of(lines_.at().all(), "\f\v");
   }
 
-  /// Reads vertices on all threads, up to the first one that does not have the next number or holds anything
+  /// Reads vertices on all threads, up to the first line that does not have the next number or holds anything
   /// but numbers. Returns how many it read.
   Index read_plain_vertices(const Header& header) {
     if (!is_plain(header)) return 0;
@@ -380,7 +380,7 @@ class Reader {
     return place;
   }
 
-  /// Reads the lines up to the next keyword, verbatim.
+  /// Keeps the lines up to the next keyword.
   void read_lines(VegaSection& section) {
     std::string_view line;
     while (lines_.peek(line) && line.front() != '*') {
@@ -441,7 +441,8 @@ class Reader {
     lines_.take();
   }
 
-  /// Keeps an unknown section verbatim; fails if it has whole numbers, which could name elements or vertices.
+  /// Keeps the lines of an unknown section; fails if they have integers, which could name elements or
+  /// vertices.
   void read_other(VegaSection& section, const std::string& title) {
     section.title = title;
     const std::int64_t where = lines_.at().line();

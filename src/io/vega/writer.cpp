@@ -222,7 +222,7 @@ class VegaWriter {
     out_.write("\n");
   }
 
-  /// Returns the word of the file (TET or TETS) if it still fits, else the usual word.
+  /// Returns the element word of the file that was read, such as TETS, if it still fits, else the usual word.
   [[nodiscard]] std::string word_of(int width) const {
     const std::string usual = width == 4 ? "TET" : "CUBIC";
     const bool fits = native_ && same_but_for_case(native_->element_word.substr(0, usual.size()), usual);

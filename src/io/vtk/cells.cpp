@@ -19,7 +19,7 @@ struct CellType {
   Shape shape;
   int vertices;  // number of vertices; if negative, there are at least −vertices
 
-  // positions whose vertices are swapped in a Mesh; {0, 0} swaps nothing
+  // pairs of positions to swap for a Mesh; {0, 0} swaps nothing
   std::array<std::pair<int, int>, 2> swapped{};
 };
 
@@ -29,8 +29,8 @@ constexpr int kVoxel = 11;
 constexpr int kLinearWedge = 13;
 constexpr int kPyramid = 14;
 
-// The first triangle of a linear wedge faces outward in VTK up to 9.6 and in VTK's files by Gmsh and meshio.
-// It faces inward in a Mesh, in Gmsh's own files, in Lagrange wedges and in VTK 9.7. This direction decides
+// The first triangle of a linear wedge faces outward in VTK up to 9.6 and in VTK files by Gmsh and meshio. It
+// faces inward in a Mesh, in Gmsh's own files, in Lagrange wedges and in VTK 9.7. This direction decides
 // faces, normals and volumes. Quadratic wedges are ordered as in a Mesh, also in the files of Gmsh and
 // meshio; VTK 9.1 sees their faces from inside, which the release notes of a later version call a mistake.
 constexpr std::array<std::pair<int, int>, 2> kWedge{{{1, 2}, {4, 5}}};
@@ -134,8 +134,8 @@ bool can_be(int number, Shape shape, int vertices) {
   return type != nullptr && type->shape == shape && fits(*type, vertices);
 }
 
-/// Returns the numbers of VTK's types that the reader kept; null if there are none. An array of that name
-/// does not count if a number does not fit its cell. O(cells).
+/// Returns the array of VTK's type numbers that the reader kept; null if there is none, or if a number does
+/// not fit its cell. O(cells).
 const std::vector<std::uint8_t>* kept_types(const Mesh& mesh) {
   const DataArray* const kept = find_array(mesh, kCellTypes, Association::cells);
   if (kept == nullptr || !kept->is_dense() || kept->components != 1) return nullptr;
@@ -147,7 +147,7 @@ const std::vector<std::uint8_t>* kept_types(const Mesh& mesh) {
   return numbers;
 }
 
-/// Caches default types: a mesh has few different ones.
+/// Caches default types: a mesh has few different types.
 class DefaultTypes {
  public:
   const CellType* operator()(Shape shape, int vertices) {
@@ -163,7 +163,7 @@ class DefaultTypes {
   std::array<std::array<std::pair<bool, const CellType*>, kRemembered>, kShapes> types_{};
 };
 
-/// Returns whether linear wedges are numbered as by VTK 9.7. Cells of a wrong size do not count.
+/// Returns whether linear wedges are numbered as in VTK 9.7. Cells of a wrong size do not count.
 bool wedges_face_inward(const std::vector<Point>& points, const FileCells& cells) {
   if (std::find(cells.types.begin(), cells.types.end(), kLinearWedge) == cells.types.end()) return false;
   WedgeVote vote(points);
@@ -194,10 +194,10 @@ bool take_cells(Mesh& mesh, FileCells& cells, const ErrorAt& error, Notes& notes
   const bool inward_wedges = wedges_face_inward(mesh.points, cells);
   DefaultTypes defaults;
   Index converted = 0;
-  bool plain = true;  // whether shapes and vertices determine all types
+  bool plain = true;  // whether shapes and numbers of vertices determine all types
   const Index count = index_size(cells.types);
   mesh.cells.shapes.resize(count);
-  const CellType* usual_type = nullptr;  // type of the last cell, if it needs no work: most cells are alike
+  const CellType* usual_type = nullptr;  // type of the last cell, if it swaps nothing: most cells are alike
   Offset usual_vertices = 0;
   for (Index c = 0; c < count; ++c) {
     const CellType* type = known[cells.types[c]];
@@ -281,7 +281,7 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
   if (type->number == kPolyhedron) return has_polyhedra(mesh) || kept_types(mesh) != nullptr;
   const bool lagrange = type->number >= kFirstLagrange && type->number <= kLastLagrange;
   if (!lagrange || is_from_vtk(mesh)) return true;
-  return kept_types(mesh) != nullptr;  // the kept types say which Lagrange type it is
+  return kept_types(mesh) != nullptr;  // kept types mean that the nodes are in VTK's order
 }
 
 std::vector<std::uint8_t> cell_types(const Mesh& mesh) {

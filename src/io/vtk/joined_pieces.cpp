@@ -132,7 +132,7 @@ class PieceJoiner {
     return rows;
   }
 
-  /// Returns the points that stay, and renumbers the entries of all cells.
+  /// Returns the points to keep, sorted by global id if there are any; renumbers the vertices of all cells.
   [[nodiscard]] std::vector<Index> points_kept(const std::vector<Index>& cells) {
     const std::vector<bool> is_ghost = ghosts(Association::vertices);
     std::vector<bool> is_used(is_ghost.size(), false);
@@ -173,7 +173,7 @@ class PieceJoiner {
     return kept;
   }
 
-  /// Keeps only the cells with these indices.
+  /// Keeps only the cells with these indices, in this order.
   void take_cells_of(const std::vector<Index>& rows) {
     const FileCells all = std::move(pieces_.cells);
     FileCells& cells = pieces_.cells = {};
@@ -190,7 +190,7 @@ class PieceJoiner {
     }
   }
 
-  /// Keeps only these rows in all arrays on points, or in all arrays on cells.
+  /// Keeps only these rows, in this order, in all arrays on points, or in all arrays on cells.
   void take_rows(Association association, const std::vector<Index>& rows) {
     for (DataArray& array : pieces_.arrays) {
       if (array.association == association)

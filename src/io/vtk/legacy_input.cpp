@@ -24,17 +24,17 @@ namespace {
 struct TypeName {
   std::string_view name;
   std::size_t alternative;  // index of an alternative of Values
-  bool is_kept = true;      // whether the array is written under this name again
+  bool is_kept = true;      // whether the writer uses this type name again
 };
 
-// names of types that files may have besides kLegacyTypeNames
+// type names in files besides kLegacyTypeNames
 constexpr std::array kOtherTypeNames{TypeName{"signed_char", 2},   TypeName{"long", 8},
                                      TypeName{"unsigned_long", 9}, TypeName{"vtkidtype", 8},
                                      TypeName{"long_long", 8},     TypeName{"unsigned_long_long", 9},
                                      TypeName{"bit", 3, false},    TypeName{"utf8_string", 10},
                                      TypeName{"int64", 8, false},  TypeName{"float64", 0, false}};
 
-/// Returns the number type of that name, in lower case.
+/// Returns the number type of a name in lower case; nullopt if unknown.
 std::optional<TypeName> number_type(std::string_view name) {
   const auto* const usual = std::find(kLegacyTypeNames.begin(), kLegacyTypeNames.end(), name);
   if (usual != kLegacyTypeNames.end()) {
@@ -108,7 +108,7 @@ Number LegacyInput::number(const std::string& what) {
   if constexpr (std::is_same_v<Number, double>) {
     return finite_only ? scanner.finite(what) : scanner.real(what);
   } else if constexpr (std::is_same_v<Number, float>) {
-    // parsed as float, since a conversion from double would round twice
+    // parsed as float: a conversion from double would round twice
     const std::string_view digits = scanner.peek_word();
     float value = 0;
     const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -195,7 +195,7 @@ void LegacyInput::texts(std::vector<std::string>& values, std::int64_t count, co
   }
 }
 
-/// Reads a length, whose first two bits encode its size.
+/// Reads the length of a text; its first two bits say how many bytes encode the length.
 std::int64_t LegacyInput::text_length(const std::string& what) {
   std::uint64_t length = scanner.binary<std::uint8_t>(what);
   constexpr std::array kFollowing{7, 3, 1, 0};
@@ -288,7 +288,7 @@ void LegacyInput::metadata(DataArray& array, std::optional<Association> associat
   }
 }
 
-/// Keeps keys verbatim except for norms, which VTK computes.
+/// Reads INFORMATION; keeps its keys verbatim except for norms, which VTK computes.
 void LegacyInput::information(std::int64_t keys, const DataArray& array,
                               std::optional<Association> association) {
   std::string kept;

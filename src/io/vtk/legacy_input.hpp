@@ -25,14 +25,14 @@ class LegacyInput : public NumberReader {
  public:
   explicit LegacyInput(const FilePath& path) : NumberReader(path) { order = std::endian::big; }
 
-  /// Makes the Error for a fault in a section that began at that line.
+  /// Returns the error for a fault in a section that began at that line.
   [[nodiscard]] InputError section_error(std::int64_t line, const std::string& what,
                                          const std::string& remedy) const;
 
   /// Reads a count, 0 … kMaxIndex.
   std::int64_t count(std::string_view what);
-  /// Fails unless the rest of the file has room for `entries` numbers, each of `bytes` bytes, or of two
-  /// characters in a text file.
+  /// Fails unless the rest of the file has room for `entries` numbers of `bytes` bytes, or of two characters
+  /// in a text file.
   void check_room(std::int64_t entries, std::int64_t bytes, const std::string& what) const;
 
   /// Reads an array of tuples and the METADATA that may follow it.
@@ -41,7 +41,7 @@ class LegacyInput : public NumberReader {
   /// Reads COMPONENT_NAMES and INFORMATION, up to an empty line.
   void metadata(DataArray& array, std::optional<Association> association);
 
-  bool finite_only = false;  ///< fail for real numbers in text that are not finite
+  bool finite_only = false;  ///< whether real numbers in text must be finite
   FactsOfArrays facts;
   Notes notes;
 

@@ -152,7 +152,7 @@ class LegacyReader {
     }
   }
 
-  /// Reads cells as before version 5: each cell's number of vertices before its vertices.
+  /// Reads cells as stored before version 5: for each cell, its number of vertices, then its vertices.
   void read_counted_cells(FileCells& cells, std::int64_t count, std::int64_t size, const std::string& key) {
     in_.check_room(size, 4, key);
     if (count > size)
@@ -221,7 +221,7 @@ class LegacyReader {
     return true;
   }
 
-  /// Returns one more than the last point that a cell may name, if it is known; else kMaxIndex.
+  /// Returns the number of points, if it is known, else kMaxIndex; cells may name only smaller numbers.
   [[nodiscard]] std::int64_t point_limit() const {
     return has_points_ ? mesh_.vertex_count() : std::int64_t{kMaxIndex};
   }
@@ -241,7 +241,7 @@ class LegacyReader {
         "points run from 0 to " + std::to_string(point_limit() - 1));
   }
 
-  /// Reads cells as from version 5 on: offsets, then vertices.
+  /// Reads cells as stored since version 5: offsets, then vertices.
   void read_offsets_and_vertices(FileCells& cells, std::int64_t count, std::int64_t size,
                                  const std::string& key) {
     if (count == 0) return;
@@ -449,7 +449,7 @@ class LegacyReader {
     mesh_.format_metadata = metadata_;
   }
 
-  /// Replaces the face numbers of polyhedra by their points, each at its first appearance; keeps the faces.
+  /// Replaces the numbers of each polyhedron by its points, in order of appearance; keeps its faces apart.
   void take_faces(FileCells& all) {
     if (std::find(all.types.begin(), all.types.end(), kPolyhedron) == all.types.end()) {
       if (vertex_fault_) throw InputError(*vertex_fault_);
@@ -535,11 +535,11 @@ class LegacyReader {
   LegacyLayout layout_;
   int version_ = 0;
   bool has_points_ = false;
-  std::array<FileCells, 4> sections_;  // an unstructured grid has only the first
+  std::array<FileCells, 4> sections_;  // an unstructured grid uses only the first
   std::int64_t cells_line_ = 0;
   std::int64_t types_line_ = 0;
   std::optional<InputError> vertex_fault_;
-  std::optional<Association> on_;  // the owner of the arrays that follow
+  std::optional<Association> on_;  // owner of the arrays that follow; nullopt: the whole mesh
 };
 
 }  // namespace

@@ -24,7 +24,7 @@
 namespace meshorder::vtk {
 namespace {
 
-/// Returns names and strings with unusual characters as %XX, as VTK writes them.
+/// Returns a name or string with unusual characters written as %XX, as VTK does.
 std::string encoded(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -158,7 +158,7 @@ class LegacyWriter {
       out_.print("{}\n", encoded(text));
       return;
     }
-    // the first two bits encode the size of the length
+    // the first two bits say how many bytes encode the length
     const std::uint64_t length = text.size();
     if (length < 1U << 6U) {
       out_.binary(static_cast<std::uint8_t>(0xC0U | length));
@@ -325,7 +325,7 @@ class LegacyWriter {
     }
   }
 
-  /// Writes each array that has a role under the role's keyword, and the arrays between them as a FIELD.
+  /// Writes each array that has a role under the role's keyword, and each run of other arrays as a FIELD.
   void write_arrays(const std::vector<const DataArray*>& arrays, Association association) {
     for (std::size_t i = 0; i < arrays.size();) {
       if (write_attribute(*arrays[i])) {
@@ -339,7 +339,7 @@ class LegacyWriter {
     }
   }
 
-  /// Returns the keyword of an array's role, if it fits, and the role.
+  /// Returns the keyword and the role of an array; both null if it has no role or does not fit the keyword.
   [[nodiscard]] std::pair<const LegacyAttribute*, const ArrayRole*> attribute_of(
       const DataArray& array) const {
     if (array.name.empty()) return {};

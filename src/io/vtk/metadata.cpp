@@ -46,7 +46,7 @@ std::optional<std::vector<Index>> members_of(const std::vector<Number>& marks) {
 std::string held_name(const std::string& name, NamePlace place) {
   if (name.empty()) return "array";
   if (place == NamePlace::xml) return xml_text(name);
-  if (place == NamePlace::legacy) return name == "NULL_ARRAY" ? name + '_' : name;  // readers skip it
+  if (place == NamePlace::legacy) return name == "NULL_ARRAY" ? name + '_' : name;  // readers skip NULL_ARRAY
   return name_in_hdf5(name);
 }
 

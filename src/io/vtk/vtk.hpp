@@ -84,7 +84,7 @@ inline constexpr std::array kLegacyAttributes{
     LegacyAttribute{"EDGE_FLAGS", Role::edge_flag, 1},
 };
 
-/// Sections of cells in legacy POLYDATA files, in the order in which cell data counts them.
+/// Sections of cells in legacy POLYDATA files, in the order that cell data follows.
 inline constexpr std::array<std::string_view, 4> kPolydataSections{"VERTICES", "LINES", "POLYGONS",
                                                                    "TRIANGLE_STRIPS"};
 
@@ -95,7 +95,7 @@ inline constexpr std::string_view kPoints = "POINTS";
 inline constexpr std::array<std::string_view, 4> kCompressors{
     "", "vtkZLibDataCompressor", "vtkLZ4DataCompressor", "vtkLZMADataCompressor"};
 
-/// An array and its role. If a legacy file has several arrays of one role, the first has it.
+/// An array and its role. If a legacy file has several arrays of one role, the first one has the role.
 struct ArrayRole {
   Role role;
   Association association;
@@ -132,7 +132,7 @@ using FactsOfArrays = std::map<std::pair<std::optional<Association>, std::string
 
 /// Data of VTK's files beyond the mesh, kept by the readers for the writers.
 struct VtkMetadata : FormatMetadata {
-  std::vector<DataArray> fields;  ///< arrays of the whole mesh; their association and indices mean nothing
+  std::vector<DataArray> fields;  ///< arrays of the whole mesh; their association and indices are unused
   std::vector<ArrayRole> roles;
   FactsOfArrays facts;
   bool float_points = false;
@@ -152,8 +152,8 @@ const ArrayFacts* find_facts(const VtkMetadata& metadata, std::optional<Associat
 
 // ---- cells
 
-/// Name of the array of VTK's cell types. Kept if shape and number of vertices do not determine them: a
-/// Lagrange tetrahedron of 10 nodes is not a quadratic one.
+/// Name of the array of VTK's cell types. The array is kept if shapes and numbers of vertices do not
+/// determine the types: a tetrahedron of 10 nodes may be a quadratic or a Lagrange one.
 inline constexpr std::string_view kCellTypes = "vtk:type";
 
 /// Cells as in VTK's files: type numbers of vtkCellType.h; cell c has the vertices from `offsets[c]` on.
@@ -164,12 +164,12 @@ struct FileCells {
   Polyhedra polyhedra;
 };
 
-/// Makes the Error for a fault of the cell types: (what, remedy).
+/// Makes the error for a fault of cells or pieces: (what, remedy).
 using ErrorAt = std::function<InputError(const std::string&, const std::string&)>;
 
 /// Gives `mesh` these cells, with their vertices in the order of a Mesh. Pixels and voxels become quads and
-/// hexahedra, which is noted. Type numbers that shape and vertices do not determine are kept as the array
-/// kCellTypes. Moves the contents of `cells` out, except the polyhedra; the types move to the array
+/// hexahedra, which is noted. Type numbers that shapes and numbers of vertices do not determine are kept as
+/// the array kCellTypes. Moves the contents of `cells` out, except the polyhedra; the types move to the array
 /// kCellTypes or stay. O(vertex entries).
 ///
 /// The first triangle of a linear wedge faces outward up to VTK 9.6 and inward since then. Files do not say
@@ -206,14 +206,14 @@ bool is_higher_order_hexahedron(std::uint8_t type);
 /// Returns whether the nodes of a cell of that type may be in another order in a file than in a Mesh.
 bool may_be_reordered(std::uint8_t type);
 
-/// Swaps, in all higher-order hexahedra of `cells`, the two edges that VTK 9 numbers differently; a second
-/// call undoes it. Degrees come from the array HigherOrderDegrees of the mesh, if any.
+/// Swaps the two edges that VTK 9 numbers differently in all higher-order hexahedra of `cells`; a second call
+/// swaps them back. Degrees come from the array HigherOrderDegrees of the mesh, if any.
 void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& types, Cells& cells);
 
 // ---- reading
 
-/// Appends points from their coordinates, three for each. If a coordinate of the k-th new point, from 0 on,
-/// is not finite, throws `not_finite(k)`. Integers are converted; texts make no points. O(points).
+/// Appends points from their coordinates, three for each. Throws `not_finite(k)` if new point k, counted from
+/// 0, has a coordinate that is not finite. Integers are converted; texts make no points. O(points).
 void add_points(std::vector<Point>& points, const Values& coordinates,
                 const std::function<InputError(std::size_t k)>& not_finite);
 
@@ -239,8 +239,8 @@ DataArray full_array(const DataArray& array, Index count);
 /// Where a file stores the names of its arrays; this decides which characters they may have.
 enum class NamePlace : std::uint8_t { legacy, xml, hdf5 };
 
-/// Makes a name valid for a dataset of HDF5, where a slash separates groups, a dot is the group itself, and a
-/// zero byte ends a name.
+/// Returns a name made valid for a dataset of HDF5, where a slash separates groups, a dot is the group
+/// itself, and a zero byte ends a name.
 std::string name_in_hdf5(std::string name);
 
 /// The input of the writers, made from a mesh. Borrows the mesh and the notes.
@@ -250,14 +250,14 @@ std::string name_in_hdf5(std::string name);
 /// made).
 struct WriteContext {
   /// `written`: a mesh whose cells VTK's formats hold. Throws InvalidArgument if the faces of polyhedra in
-  /// the metadata are not on their vertices, because the mesh was changed.
+  /// the metadata are not on their vertices, as after a change of the mesh.
   WriteContext(const Mesh& written, Notes& warnings, NamePlace names);
 
-  /// Returns the cells in VTK's order of vertices; in the order of VTK before version 9 if `old_hexahedra`.
+  /// Returns the cells in VTK's order of vertices; hexahedra in the order before VTK 9 if `old_hexahedra`.
   /// The result belongs to the mesh or to this object.
   const Cells& cells(bool old_hexahedra = false);
-  /// Returns the cells as above, but with the faces of polyhedra instead of their vertices, as legacy files
-  /// have them. The result belongs to the mesh or to this object.
+  /// Returns the cells as `cells` does, but with the faces of polyhedra instead of their vertices, as legacy
+  /// files have them. The result belongs to the mesh or to this object.
   const Cells& cells_with_faces(bool old_hexahedra);
 
   /// Returns the array that is written with that role, null if there is none.
@@ -298,10 +298,10 @@ struct Pieces {
 /// Makes one mesh of its pieces, in place:
 /// - Leaves out the cells that `vtkGhostType` marks as cells of another piece, and the points that it marks
 ///   and that no remaining cell uses. Leaves out `vtkGhostType` itself if it marks nothing else.
-/// - Sorts points and cells by their global ids, which are in the array of that role, or of VTK's name for
-///   it. Leaves out ids that are 0, 1, 2 …
-/// - Makes one point of a point of several pieces, with the values of the piece that owns it. A point without
-///   an id on the border of pieces stays once for each piece; a note says so.
+/// - Sorts points and cells by their global ids, which are in the array with that role, else with VTK's usual
+///   name. Leaves out ids that are 0, 1, 2 …
+/// - Merges the copies of a point in several pieces, with the values of the piece that owns the point. If
+///   points have no ids, each piece keeps its copy; a note says so.
 ///
 /// Throws `error` for ids below 0, for points with one id but different coordinates, and for two cells with
 /// one id. O(n log n) for n points and cells.

@@ -18,13 +18,13 @@
 namespace meshorder::vtk {
 namespace {
 
-/// The functions of a library; all are null if the build lacks it.
+/// The functions of a library; all are null if the build lacks the library.
 struct Codec {
   /// Returns an upper bound on the compressed size of that number of bytes.
   std::size_t (*bound)(std::size_t bytes) = nullptr;
   /// Compresses into `room`; returns the compressed size in bytes, 0 on failure.
   std::size_t (*compress)(std::span<const char> bytes, std::span<char> room) = nullptr;
-  /// Fills `target`; returns false if `bytes` do not uncompress to exactly its size.
+  /// Fills `target`; returns false if `bytes` do not uncompress to exactly the size of `target`.
   bool (*uncompress)(std::span<const char> bytes, std::span<char> target) = nullptr;
 };
 

@@ -18,7 +18,7 @@ class VtuCompressor {
   /// Uncompressed size of a block of the arrays that meshorder writes, in bytes.
   static constexpr std::size_t kBlock = std::size_t{1} << 20;
 
-  /// `kind` is not `none`, and available.
+  /// `kind` must be available and not `none`.
   explicit VtuCompressor(VtuEncoding::Compressor kind) : kind_(kind) {}
 
   /// Returns whether this build has the library of the compressor; true for `none`.
@@ -33,7 +33,7 @@ class VtuCompressor {
 
   [[nodiscard]] std::string compress(std::span<const char> bytes) const;
 
-  /// Fills `target`; returns false if `bytes` do not uncompress to exactly its size.
+  /// Fills `target`; returns false if `bytes` do not uncompress to exactly the size of `target`.
   [[nodiscard]] bool uncompress(std::span<const char> bytes, std::span<char> target) const;
 
  private:

@@ -95,7 +95,7 @@ VtuDocument::VtuDocument(const FilePath& path) : scanner_(path) {
 
 InputError VtuDocument::error_at(std::size_t byte, const std::string& what, const std::string& remedy) const {
   const std::string_view before = scanner_.all().substr(0, byte);
-  // a name can hold anything; the message stays in one line
+  // a name may hold line ends; the message stays on one line
   std::string line = what;
   std::replace_if(
       line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');

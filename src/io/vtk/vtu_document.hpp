@@ -16,10 +16,10 @@ namespace meshorder::vtk {
 
 inline constexpr std::string_view kXmlBlanks = " \t\r\n";
 
-/// Decodes one entity of XML, "lt" or "#65"; returns an empty text if it is not one.
+/// Returns the text of an XML entity, such as "lt" or "#65"; empty if there is no such entity.
 std::string entity(std::string_view name);
 
-/// Returns the words that precede an array, such as its size, in the byte order of the file.
+/// Returns the bytes of header words of an array, such as its size, in the file's byte order.
 std::string vtu_words(const std::vector<std::uint64_t>& values, const VtuEncoding& encoding);
 
 struct VtuAttribute {
@@ -51,7 +51,7 @@ struct VtuElement {
     const std::string* const value = attribute(wanted);
     return value == nullptr ? std::string_view() : *value;
   }
-  /// Returns the index of its number type in Values; for an unknown type, the number of types.
+  /// Returns the index of the array's number type in Values; for an unknown type, the number of types.
   [[nodiscard]] std::size_t number_type() const {
     return static_cast<std::size_t>(std::find(kXmlTypeNames.begin(), kXmlTypeNames.end(), text_of("type")) -
                                     kXmlTypeNames.begin());
@@ -63,11 +63,11 @@ struct VtuElement {
 /// A parsed .vtu file: its elements and the bytes of its arrays.
 class VtuDocument {
  public:
-  /// Throws Error for a file that is not XML, ends early or is not of the type UnstructuredGrid or
+  /// Throws InputError unless the file is a sound and supported file of the type UnstructuredGrid or
   /// PUnstructuredGrid.
   explicit VtuDocument(const FilePath& path);
 
-  /// Returns whether it is a .pvtu file, which lists pieces.
+  /// Returns whether the file is a .pvtu file, which lists pieces.
   [[nodiscard]] bool lists_pieces() const { return *root_.attribute("type") == "PUnstructuredGrid"; }
 
   [[nodiscard]] const VtuElement& root() const noexcept { return root_; }
@@ -75,7 +75,7 @@ class VtuDocument {
   /// Returns ten times the version.
   [[nodiscard]] int version() const noexcept { return version_; }
 
-  /// Makes an Error at the line of that element.
+  /// Returns an InputError at the line of an element.
   [[nodiscard]] InputError error(const VtuElement& at, const std::string& what,
                                  const std::string& remedy) const {
     return error_at(at.at, what, remedy);
@@ -88,7 +88,7 @@ class VtuDocument {
 
   /// Returns a required attribute.
   [[nodiscard]] const std::string& required(const VtuElement& element, std::string_view name) const;
-  /// Returns a count in an attribute, 0 … `most`, which is kMaxIndex or the highest number of 64 bits.
+  /// Returns the count in an attribute, 0 … `most`; `most` is kMaxIndex or the highest 64-bit number.
   [[nodiscard]] std::int64_t count(const VtuElement& element, std::string_view name,
                                    std::int64_t most = kMaxIndex) const;
   /// Returns how many numbers a row of an array has.

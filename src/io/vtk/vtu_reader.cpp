@@ -36,7 +36,7 @@ class VtuReader {
     if (file.lists_pieces()) {
       read_listed(file, *grid);
       file_ = &file;
-      types_ = nullptr;  // it points into a file that is closed
+      types_ = nullptr;  // it pointed into a file that is now closed
       join(*grid);
     } else {
       read_grid(file, *grid);
@@ -217,8 +217,8 @@ class VtuReader {
     read_polyhedra(*cells, count, first_point);
   }
 
-  /// Reads `count` ends, which the array counts from 0, and appends them to `ends`, increased by its last
-  /// entry. Returns the last end in the array. Messages call an item a `thing`.
+  /// Appends the `count` ends of an array, which count from 0, to `ends`, each increased by the old last
+  /// entry of `ends`. Returns the array's last end. Messages call an item a `thing`.
   Offset append_ends(const VtuElement& array, std::int64_t count, const char* thing,
                      std::vector<Offset>& ends) {
     const Offset first = ends.back();
@@ -267,8 +267,8 @@ class VtuReader {
     }
   }
 
-  /// Reads polyhedra as VTK wrote them up to 9.3: the numbers of Polyhedra, and the end of each cell's
-  /// numbers; −1 for other cells.
+  /// Reads polyhedra as VTK wrote them up to 9.3: the numbers of `Polyhedra`, and for each cell the end of
+  /// its numbers; −1 if the cell is not a polyhedron.
   void read_streams_of_faces(const VtuElement& cells, std::int64_t count, std::int64_t first_cell,
                              Index first_point) {
     constexpr const char* kNeeded = "polyhedra have faces and faceoffsets";
@@ -365,8 +365,8 @@ class VtuReader {
     }
   }
 
-  /// Appends `checked(i, number)` for every number of an array. The first array of the target's type becomes
-  /// the target, without a copy.
+  /// Appends `checked(i, number)` for every number of an array. If `target` is empty and has the array's
+  /// type, reuses the array's memory.
   template <class Number, class Checked>
   void append_integers(const VtuElement& array, std::int64_t count, std::vector<Number>& target,
                        const Checked& checked) {
@@ -388,7 +388,7 @@ class VtuReader {
     });
   }
 
-  /// Refuses an array of any step but the first, and notes that the time of a single step is left out.
+  /// Throws InputError for an array of a step after the first; notes that the time of a step is left out.
   void refuse_time_steps(const VtuElement& array) const {
     const std::string* const step = array.attribute("TimeStep");
     if (step == nullptr) return;
@@ -505,7 +505,7 @@ class VtuReader {
     mesh_.format_metadata = metadata_;
   }
 
-  /// Ten times the version since which VTK numbers the nodes of higher-order hexahedra differently.
+  /// Ten times the file version since which VTK numbers the nodes of higher-order hexahedra differently.
   static constexpr int kNewOrder = 21;
 
   const FilePath& path_;

@@ -27,9 +27,9 @@ namespace meshorder::vtk {
 /// Location of the bytes of an array.
 struct VtuDocument::Stored {
   std::uint64_t size = 0;                 // uncompressed, in bytes
-  std::string decoded;                    // the bytes, if they are in base64
+  std::string decoded;                    // the decoded bytes if the file has base64
   std::string_view bytes;                 // all blocks, or the plain bytes
-  std::vector<std::uint64_t> compressed;  // bytes of each block
+  std::vector<std::uint64_t> compressed;  // size of each block in bytes
   std::vector<std::uint64_t> uncompressed;
 };
 
@@ -124,8 +124,8 @@ VtuDocument::Stored VtuDocument::locate(const VtuElement& array) const {
   return stored;
 }
 
-/// Locates compressed blocks. Words of the header give the number of blocks, the size of each block, the size
-/// of the last block, and the compressed size of each; the blocks follow.
+/// Locates compressed blocks. The words of the header are: number of blocks, size of a block, size of the
+/// last block (0 if full), compressed size of each block. The blocks follow.
 void VtuDocument::locate_blocks(const VtuElement& array, std::string_view data, bool coded,
                                 Stored& stored) const {
   const auto early = [&] { return error(array, "the array's bytes end early", "the file may be cut short"); };
@@ -255,7 +255,7 @@ std::vector<Number> VtuDocument::numbers(const VtuElement& array, std::int64_t c
   return result;
 }
 
-/// Reads the bits of an array of type Bit: eight in a byte, the first in the highest bit; in text as numbers.
+/// Reads the bits of an array of type Bit: eight in a byte, the highest first; in text, a number for each.
 std::vector<std::uint8_t> VtuDocument::bits(const VtuElement& array, std::int64_t count) const {
   if (mode(array) == VtuEncoding::Mode::ascii) return words<std::uint8_t>(array, count);
   const std::vector<std::uint8_t> packed = numbers<std::uint8_t>(array, (count + 7) / 8);

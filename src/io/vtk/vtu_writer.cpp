@@ -50,7 +50,7 @@ struct Array {
   std::uint64_t offset = 0;
 };
 
-/// An element of the file with arrays.
+/// An element of the file that holds arrays.
 struct ArraySection {
   std::string_view name;
   std::string attributes;
@@ -181,7 +181,7 @@ class VtuWriter {
     return result;
   }
 
-  /// Returns the vertices, ends and types of the cells; VTK requires one number type for the first two.
+  /// Returns the arrays of the cells. VTK requires the same number type for vertices and ends.
   std::vector<Array> cells() {
     const Cells& cells = from_.cells();
     Numbers vertices = std::span<const std::int32_t>(cells.vertices);
@@ -249,8 +249,8 @@ class VtuWriter {
     return (byte_count(array) + VtuCompressor::kBlock - 1) / VtuCompressor::kBlock;
   }
 
-  /// Returns the bytes of a block of an array, in the byte order of the file; `room` stores them if memory
-  /// has another byte order.
+  /// Returns the bytes of a block of an array, in the byte order of the file; `room` stores them if the
+  /// machine has another byte order.
   std::span<const char> block_of(const Array& array, std::uint64_t block, std::vector<char>& room) const {
     return std::visit(
         [&](const auto& numbers) {
@@ -416,7 +416,7 @@ class VtuWriter {
   OutputFile out_;
   std::vector<ArraySection> sections_;
 
-  // numbers of arrays that the mesh does not have
+  // numbers of arrays that the writer makes
   std::vector<std::shared_ptr<std::string>> texts_;
   std::vector<float> float_points_;
   std::vector<std::int32_t> ends_;

@@ -86,7 +86,7 @@ class VtkHdfReader {
     if (!place) return false;
     part.type = static_cast<std::uint8_t>(file_.info(path).alternative);
     part.at = static_cast<std::int64_t>(*place);
-    if (part.role == FilePart::Role::offsets) {  // without the first one, the offsets are the ends of cells
+    if (part.role == FilePart::Role::offsets) {  // after the first offset, the others are the ends of cells
       --part.rows;
       part.at += part.row_size();
     }
@@ -105,7 +105,7 @@ class VtkHdfReader {
            add({.role = role, .association = association, .components = width, .rows = rows}, path, name);
   }
 
-  /// Adds the arrays on points or cells; returns false if `add` does so.
+  /// Adds the arrays on points or cells; returns false if one does not hold numbers or `add` returns false.
   bool add_data(Association association) {
     const std::string group = data_group(association);
     read_roles(association);
@@ -151,7 +151,7 @@ class VtkHdfReader {
     }
   }
 
-  /// Reads one of the datasets with a count of each partition.
+  /// Reads a dataset that has one count for each partition.
   [[nodiscard]] std::vector<std::int64_t> counts(std::string_view dataset) const {
     const std::string path = path_of(dataset);
     const Values values = file_.read(path);
@@ -196,7 +196,7 @@ class VtkHdfReader {
 
   // ---- the mesh
 
-  /// Throws unless a dataset has `rows` rows of `width` numbers; else returns its shape and type.
+  /// Returns the shape and type of a dataset. Throws InputError unless it has `rows` rows of `width` numbers.
   [[nodiscard]] hdf5::DatasetInfo check_rows(const std::string& path, std::int64_t rows,
                                              std::uint64_t width) const {
     hdf5::DatasetInfo info = file_.info(path);
@@ -311,7 +311,7 @@ class VtkHdfReader {
 
   // ---- arrays
 
-  /// Returns how many numbers a row has.
+  /// Returns how many numbers a row of a dataset has.
   [[nodiscard]] Index components_of(const std::string& path, const hdf5::DatasetInfo& info) const {
     constexpr std::uint64_t kMost = kMaxIndex;
     std::uint64_t components = 1;
@@ -413,7 +413,7 @@ class VtkHdfReader {
   std::shared_ptr<vtk::VtkMetadata> metadata_ = std::make_shared<vtk::VtkMetadata>();
   std::vector<Partition> partitions_;
   std::int64_t full_partitions_ = 0;  ///< partitions that have points or cells
-  vtk::FileCells cells_;              ///< cells of all partitions; `arrays_` also has rows of all
+  vtk::FileCells cells_;              ///< cells of all partitions; `arrays_` has the rows of all partitions
   std::vector<DataArray> arrays_;
   Partition all_;
   FileLayout layout_;

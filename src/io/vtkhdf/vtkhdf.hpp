@@ -22,7 +22,7 @@ namespace meshorder::vtkhdf {
 
 inline constexpr std::string_view kRoot = "/VTKHDF";
 inline constexpr std::string_view kType = "UnstructuredGrid";
-/// Attribute of a field whose values are rows of several numbers: VTK 9.1 reads fields of one dimension only.
+/// Attribute: number of values in a row of a field, if not 1. VTK 9.1 reads only fields of one dimension.
 inline constexpr std::string_view kComponents = "NumberOfComponents";
 
 /// Returns the group of the arrays on vertices or cells.
@@ -59,7 +59,7 @@ std::optional<RawGrid> find_raw(const FilePath& path);
 /// @param layout    arrays of all partitions; its parts receive the positions of their values in the file
 /// @param metadata  fields, and roles of arrays of the layout; others are left out
 /// @param notes     receives notes on arrays and fields that have another name in the file
-/// @throws InputError if it cannot be written
+/// @throws InputError if the file cannot be written
 void write_without_values(const std::filesystem::path& path, const std::string& name,
                           const std::vector<Partition>& partitions, FileLayout& layout,
                           const vtk::VtkMetadata& metadata, Notes& notes);

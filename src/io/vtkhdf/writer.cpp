@@ -80,7 +80,7 @@ class VtkHdfWriter {
     const Cells& cells = from_.cells();
     write_counts(file_, {{from_.mesh.vertex_count(), from_.mesh.cell_count(), cells.offsets.back()}});
     write_points();
-    // both have 64 bits and the same type, as in the files of VTK's own writer
+    // both have the same 64-bit type, as in the files of VTK's own writer
     put("Offsets", std::vector<std::int64_t>(cells.offsets.begin(), cells.offsets.end()));
     put("Connectivity", std::vector<std::int64_t>(cells.vertices.begin(), cells.vertices.end()));
     put("Types", from_.types);

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <utility>
 
-// Reads Attributes and Sets. The Attributes or Sets of several Grids may become one array.
+// Reads Attributes and Sets. The Attributes of several Grids may become one array, and their Sets one set.
 
 namespace meshorder::xdmf {
 void ArrayReader::add_moved_points(const GridElement& grid, std::vector<Field>& fields,
@@ -93,7 +93,7 @@ void ArrayReader::read_attribute(const GridElement& grid, int part, pugi::xml_no
 }
 
 void ArrayReader::read_of_grid(pugi::xml_node item, const std::string& name) {
-  const DataPlace place = reading_.data.place_of(item);  // opens the file, too, which is then kept
+  const DataPlace place = reading_.data.place_of(item);  // also opens the file, so that the file is kept
   if (place.format == DataPlace::Format::binary) {
     throw reading_.document.error(item,
                                   fmt::format("the attribute '{}' of the Grid is in a binary file", name),

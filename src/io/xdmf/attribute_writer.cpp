@@ -103,7 +103,7 @@ bool Writer::has_rows(const DataArray& array, const std::vector<Index>& cells) c
 }
 
 void Writer::add_attribute(int part, const DataArray& array, const std::string& name, const Values& values) {
-  // for a series, this is its first Grid
+  // in a series, the first Grid gets the attribute
   pugi::xml_node element = grids_[layout_.parts[part].grid].append_child("Attribute");
   set_attribute(element, "Name", name);
   set_attribute(element, "AttributeType", attribute_type(array.components));

@@ -27,7 +27,7 @@ using Format = DataPlace::Format;
 
 constexpr std::string_view kBlanksOfXml = " \t\r\n";
 
-/// Number types by the names that VTK's readers accept: one byte is Char or UChar to them, not Int.
+/// A number type under a name that VTK's readers accept: they know one byte as Char or UChar, not as Int.
 struct NumberType {
   std::string_view name;
   int precision;  ///< bytes
@@ -47,7 +47,7 @@ std::string_view trimmed_blanks(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanksOfXml) - first + 1);
 }
 
-/// All text of an element; it is copied only if it is in several pieces.
+/// All text of an element. Only text in several pieces is copied.
 class ElementText {
  public:
   explicit ElementText(pugi::xml_node element) {
@@ -105,7 +105,7 @@ std::size_t alternative_of(const Document& document, pugi::xml_node item) {
   return found->alternative;
 }
 
-/// Sets where the values of a DataItem are in a binary file.
+/// Stores in `place` where the values of a DataItem are in a binary file.
 void find_bytes(const Document& document, pugi::xml_node item, DataPlace& place) {
   place.file = trimmed_blanks(ElementText(item).view());
   const std::string order = attribute(item, "Endian");
@@ -241,7 +241,7 @@ const hdf5::File& DataReader::file(pugi::xml_node item, const std::string& name)
   if (known != files_.end()) return known->second;
   hdf5::File opened = hdf5::File::open(path_of(item, name));
   const std::string mark = opened.text_attribute("/", kMark).value_or("");
-  // the .xdmf file reaches its final path first: if the files are from two runs, it is the newer one, and it
+  // the .xdmf file is put in place first: if the files are from two runs, the .xdmf file is the newer one and
   // has a mark
   if (!document_.mark().empty() && mark != document_.mark()) {
     throw NotTogether(document_.error(

@@ -30,11 +30,11 @@ struct DataPlace {
   std::endian order = std::endian::native;  ///< byte order in a binary file
   std::uint64_t seek = 0;                   ///< first byte in a binary file
   std::vector<std::uint64_t> shape = {};
-  /// Number of the DataItem in the Topology, Geometry, Attribute or Set: `item`, or a DataItem that refers to
-  /// it.
+  /// Number of the DataItem in the Topology, Geometry, Attribute or Set: `item`, or one that refers to
+  /// `item`.
   std::size_t named_by = 0;
 
-  /// Another DataItem, in another time step for example, that names the same values.
+  /// Another DataItem that names the same values, for example in another time step.
   struct Repeat {
     std::size_t item;
     std::size_t named_by;
@@ -43,11 +43,11 @@ struct DataPlace {
 
   /// Returns the number of values.
   [[nodiscard]] std::uint64_t count() const;
-  /// Adds a DataItem later in the file that names the same values.
+  /// Adds a later DataItem that names the same values.
   void repeat(const DataPlace& other);
 };
 
-/// Returns a key of an array: DataItems with one key have the same values.
+/// Returns a key of an array: DataItems with the same key have the same values.
 std::string key_of(const DataPlace& place);
 
 /// Returns the attributes NumberType and Precision for the number type of an alternative of Values.
@@ -61,8 +61,8 @@ class DataReader {
  public:
   DataReader(const Document& document, FilePath path) : document_(document), path_(std::move(path)) {}
 
-  /// Returns where the values of a DataItem are; follows references. Throws if it does not understand the
-  /// DataItem.
+  /// Returns where the values of a DataItem are; follows references. Throws InputError if the DataItem is not
+  /// supported.
   [[nodiscard]] DataPlace place_of(pugi::xml_node item);
   /// Returns the values of a place, as many as its shape says.
   [[nodiscard]] Values read(const DataPlace& place);
@@ -70,13 +70,13 @@ class DataReader {
   /// an index.
   [[nodiscard]] std::vector<Index> read_indices(const DataPlace& place);
 
-  /// Returns the path of a file that a DataItem names. Throws if it is missing or may not be read.
+  /// Returns the path of a file that a DataItem names. Throws InputError if it is missing or not allowed.
   [[nodiscard]] FilePath path_of(pugi::xml_node item, const std::string& name) const;
   /// Returns the opened HDF5 files by their names in the XML.
   [[nodiscard]] const std::map<std::string, hdf5::File>& files() const noexcept { return files_; }
 
  private:
-  /// Sets where the values of a DataItem are in an HDF5 file, and their number type.
+  /// Stores in `place` where the values of a DataItem are in an HDF5 file, and their number type.
   void find_dataset(pugi::xml_node item, DataPlace& place);
   const hdf5::File& file(pugi::xml_node item, const std::string& name);
   [[nodiscard]] Values read_text(const DataPlace& place, pugi::xml_node item) const;

@@ -228,7 +228,7 @@ std::vector<pugi::xml_node> Document::children(pugi::xml_node grid) const {
 }
 
 std::string Document::take_values_out(std::vector<std::size_t> items) {
-  // from higher to lower numbers: inner elements come before the elements around them
+  // descending: an inner element has a higher number than the elements around it
   std::sort(items.begin(), items.end(), std::greater());
   for (const std::size_t item : items) items_[item].remove_children();
   std::string text;

@@ -16,12 +16,12 @@
 
 namespace meshorder::xdmf {
 
-/// Name of the mark of an .xdmf file and its HDF5 files that were written together: a processing instruction
-/// in the root element, and an attribute of the root of each HDF5 file. All have the same 16 digits; the
-/// reader refuses files with different digits.
+/// Name of the mark that an .xdmf file and its HDF5 files get when they are written together: a processing
+/// instruction in the root element, and an attribute of the root group of each HDF5 file. All have the same
+/// 16 digits; the reader refuses files with different digits.
 inline constexpr const char* kMark = "meshorder";
-/// A plain binary file has no room for a mark. The DataItem that names it has a checksum of the values
-/// instead, as an attribute of this name.
+/// A plain binary file has no room for a mark. Instead, the DataItem that names the file has a checksum of
+/// the values, in an attribute of this name.
 inline constexpr const char* kValueMark = "MeshorderChecksum";
 
 /// Returns whether a child of the root element is the processing instruction `kMark`.
@@ -30,13 +30,13 @@ bool is_mark(pugi::xml_node node);
 /// The XML of an XDMF file.
 class Document {
  public:
-  /// Throws InputError for a file that is not XML or whose root is not <Xdmf>.
+  /// Throws InputError unless the file is XML with the root <Xdmf>, and as `with_entities_expanded`.
   explicit Document(const FilePath& path);
 
   [[nodiscard]] pugi::xml_node root() const { return xml_.document_element(); }
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
 
-  /// Makes an InputError at the line of an element.
+  /// Returns an InputError at the line of an element.
   [[nodiscard]] InputError error(pugi::xml_node at, const std::string& what, const std::string& remedy) const;
 
   /// Returns the mark that the file shares with its HDF5 files, empty if it has no mark; see `kMark`.
@@ -46,7 +46,7 @@ class Document {
   [[nodiscard]] pugi::xml_node resolved(pugi::xml_node element) const;
   /// Returns the child elements of a Grid, with xi:include and references resolved.
   [[nodiscard]] std::vector<pugi::xml_node> children(pugi::xml_node grid) const;
-  /// Returns the number of a DataItem or a Grid among all DataItems or Grids, in the order of the file.
+  /// Returns the number, from 0, of a DataItem among the file's DataItems, or of a Grid among its Grids.
   [[nodiscard]] std::size_t number(pugi::xml_node element) const { return numbers_.at(element.hash_value()); }
   /// Returns the DataItem of that number.
   [[nodiscard]] pugi::xml_node item(std::size_t number) const { return items_[number]; }
@@ -55,7 +55,7 @@ class Document {
   [[nodiscard]] std::string take_values_out(std::vector<std::size_t> items);
 
  private:
-  /// Returns the text before the root element; a plain declaration if it names an encoding other than UTF-8.
+  /// Returns the text before the root element; a plain declaration if the encoding in it is not UTF-8.
   [[nodiscard]] std::string_view prolog() const;
   [[nodiscard]] const std::vector<pugi::xml_node>& selected(pugi::xml_node from, std::string path) const;
 
@@ -71,18 +71,18 @@ class Document {
 /// Returns all elements of a name in the order of the file.
 std::vector<pugi::xml_node> elements_named(const pugi::xml_document& xml, std::string_view name);
 
-/// Parses XML that `Document::take_values_out` made. Throws std::bad_alloc if there is no memory.
+/// Parses the XML of a layout. Throws std::bad_alloc if there is no memory.
 void parse(pugi::xml_document& xml, const std::string& text);
 
-/// Sets the text of an element, or adds or sets an attribute. Both throw std::bad_alloc if there is no
-/// memory. They also throw it for a null element: there was no memory to add the element.
+/// Sets the text of an element; sets or adds an attribute. Both throw std::bad_alloc if there is no memory,
+/// also for a null element: there was no memory to add the element.
 void set_text(pugi::xml_node element, const std::string& text);
 void set_attribute(pugi::xml_node element, const char* name, const std::string& value);
 
-/// Takes the next part of a text.
+/// A function that receives the next part of a text.
 using TakeText = std::function<void(std::string_view part)>;
 
-/// `print` writes XML as it was parsed, after `prolog`, the text before its root element. `print_indented`
+/// `print` writes `prolog`, the text before the root element, then the XML as it was parsed. `print_indented`
 /// writes a line for each element.
 void print(const pugi::xml_document& xml, std::string_view prolog, const TakeText& take);
 void print_indented(const pugi::xml_document& xml, const TakeText& take);
@@ -92,8 +92,8 @@ void print_indented(const pugi::xml_document& xml, const TakeText& take);
 std::string attribute(pugi::xml_node element, const char* name, const char* other_name = "");
 
 /// Returns an XML text without the declarations of its DOCTYPE, with each `&NAME;` replaced by the entity
-/// that was declared under that name. Lines keep their numbers. Returns a text that declares no entities as
-/// it is. Opens no file. O(length of the result).
+/// that was declared under that name. Lines keep their numbers. A text that declares no entities is returned
+/// unchanged. Opens no file. O(length of the result).
 ///
 /// @param file  name for messages
 /// @throws InputError for references to external, undeclared and circular entities, for parameter entities,

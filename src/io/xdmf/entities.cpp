@@ -137,7 +137,7 @@ class Expansion {
   /// Reads <!ENTITY NAME "TEXT">; returns its end.
   std::size_t read_entity(std::size_t begin) {
     std::size_t at = skip_blanks(begin + std::string_view("<!ENTITY").size());
-    if (at < text_.size() && text_[at] == '%') return skip_declaration(begin);  // its use is refused
+    if (at < text_.size() && text_[at] == '%') return skip_declaration(begin);  // refused where it is used
     const std::size_t end = end_of_name(text_, at);
     const std::string name(text_.substr(at, end - at));
     at = skip_blanks(end);
@@ -222,7 +222,7 @@ class Expansion {
     const std::string name(text.substr(1, end - 1));
     const bool is_plain = name.empty() || end == text.size() || text[end] != ';' ||
                           std::find(kPredefined.begin(), kPredefined.end(), name) != kPredefined.end();
-    if (is_plain) {  // pugixml replaces it
+    if (is_plain) {  // pugixml replaces the reference
       result += '&';
       return 1;
     }

@@ -71,7 +71,7 @@ namespace {
 
 constexpr int kDeepestGrid = 8;
 
-/// Adds the uniform Grids within a Grid. Throws InputError for structured Grids and for spatial collections.
+/// Adds the uniform Grids within a Grid. Throws InputError for unsupported Grids, such as structured Grids.
 void collect(const Document& document, pugi::xml_node grid, int depth, int& series,
              std::vector<GridElement>& grids) {
   const std::string type = attribute(grid, "GridType", "Type");
@@ -109,7 +109,8 @@ void collect(const Document& document, pugi::xml_node grid, int depth, int& seri
   }
   collect(document, inner.front(), depth - 1, series, grids);
 }
-/// Returns the uniform Grids of a file, in its order. Throws as `collect`.
+/// Returns the uniform Grids in order. Throws InputError unless one <Domain> has Grids that `collect`
+/// accepts.
 std::vector<GridElement> grids_of(const Document& document) {
   const pugi::xml_node root = document.root();
   const pugi::xml_node domain = root.child("Domain");
@@ -425,7 +426,7 @@ class XdmfReader {
     }
   }
 
-  /// Notes datasets that the XML does not name, but that have as many rows as the mesh.
+  /// Notes datasets that the XML does not name, but that have as many rows as the mesh has points or cells.
   void note_other_datasets(const std::string& name, const hdf5::File& file,
                            const std::set<std::string>& named, std::array<std::int64_t, 2> counts) {
     std::vector<std::string> others;
@@ -446,7 +447,7 @@ class XdmfReader {
   FileLayout raw_;
   TopologyReader topologies_{reading_};
   ArrayReader arrays_{reading_};
-  std::map<std::string, std::size_t> known_geometries_;  // index of their first field in the layout, by key
+  std::map<std::string, std::size_t> known_geometries_;  // index of a geometry's first field, by key
 };
 
 }  // namespace

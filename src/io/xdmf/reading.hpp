@@ -31,7 +31,7 @@ struct Reading {
 
   /// Returns the only DataItem of an element.
   [[nodiscard]] pugi::xml_node item_of(pugi::xml_node element) const;
-  /// Adds the set of the cells of a Grid; returns the name that it gets.
+  /// Adds a set of the cells of a Grid; returns the set's name.
   std::string add_set_of_grid(const std::string& wanted, const std::vector<Index>& cells_of_grid);
   /// Returns the set that a field belongs to; renames the field if its part has a field of that name already.
   EntitySet& set_of(Field& field);
@@ -48,7 +48,7 @@ struct Reading {
  private:
   struct KnownSet {
     std::size_t place;    // index in the mesh
-    bool is_grid;         // whether it has all cells of a Grid
+    bool is_grid;         // whether it is the set of a Grid's cells
     std::set<int> parts;  // parts that have members in it
   };
   std::string next_set_name(Association association, const std::string& wanted, int part);
@@ -62,7 +62,7 @@ struct Reading {
 std::vector<pugi::xml_node> items_of(pugi::xml_node element);
 /// Returns the beginning of a text of the file, for messages.
 std::string shortened(const std::string& text);
-/// Reads Topologies: the cells of Grids, each once.
+/// Reads Topologies; keeps only one copy of cells that several Topologies share.
 class TopologyReader {
  public:
   explicit TopologyReader(Reading& reading) : reading_(reading) {}
@@ -71,7 +71,7 @@ class TopologyReader {
   int read(const GridElement& grid, pugi::xml_node topology);
 
  private:
-  /// Adds cells as a part, or finds the part that has them; returns its number.
+  /// Adds cells as a part, or finds the part that has them; returns the part's number.
   int part_of(const GridElement& grid, pugi::xml_node topology, vtk::FileCells piece);
 
   Reading& reading_;

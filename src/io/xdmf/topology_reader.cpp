@@ -41,7 +41,7 @@ std::size_t hash_of(const std::vector<Index>& vertices) {
   return hash;
 }
 
-/// Returns whether this Grid was added by `layout_of`.
+/// Returns whether `layout_of` added a Grid.
 bool is_added(pugi::xml_node grid) {
   return !grid.find_child_by_attribute("Information", "Name", kAdded.data()).empty();
 }
@@ -92,8 +92,8 @@ std::int64_t claimed_cells(const Document& document, pugi::xml_node topology) {
   return cells;
 }
 
-/// Reads the cells of a mixed Topology; `counted`: cells of Polyvertex have a count of points, too. Returns
-/// false if the data are faulty near `numbers[at]`.
+/// Reads the cells of a mixed Topology; `counted`: whether cells of Polyvertex also have a count of points.
+/// Returns false if the data are faulty near `numbers[at]`.
 bool read_mixed(const std::vector<Index>& numbers, std::int64_t claimed, bool counted, FileCells& cells,
                 std::size_t& at) {
   cells = {};
@@ -118,7 +118,7 @@ bool read_mixed(const std::vector<Index>& numbers, std::int64_t claimed, bool co
   return claimed < 0 || claimed == static_cast<std::int64_t>(cells.types.size());
 }
 
-/// Subtracts `base` from the points of cells. Throws InputError if a point does not exist.
+/// Subtracts `base` from the point numbers of cells. Throws InputError if a point does not exist.
 void check_vertices(const Reading& reading, pugi::xml_node item, FileCells& cells, int base) {
   const Index count = reading.mesh.vertex_count();
   if (base == 0 && all_below(cells.vertices, count)) return;
@@ -135,7 +135,7 @@ void check_vertices(const Reading& reading, pugi::xml_node item, FileCells& cell
   }
 }
 
-/// Returns the cells of a Topology as the file has them.
+/// Returns the cells of a Topology in file order, with points counted from 0.
 FileCells cells_of(Reading& reading, pugi::xml_node topology, pugi::xml_node item, const DataPlace& place,
                    int base) {
   FileCells piece;
@@ -181,7 +181,7 @@ FileCells cells_of(Reading& reading, pugi::xml_node topology, pugi::xml_node ite
   return piece;
 }
 
-/// Returns, for each cell of a piece, an earlier cell of the same type and vertices; nullopt if one is new.
+/// Returns an earlier cell of the same type and vertices for each cell of a piece; nullopt if a cell is new.
 std::optional<std::vector<Index>> known_cells(const Reading& reading, const FileCells& piece) {
   const Index count = index_size(piece.types);
   std::array<bool, 256> types{};

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// Writes .xdmf files and the files of values that they name. Data of the mesh that the layout has a field for
-// go to this field; other data are added.
+// Writes .xdmf files and the files of values that they name. Mesh data for which the layout has a field are
+// written to this field; other data are added.
 
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/named_parts.hpp"
@@ -34,11 +34,11 @@ struct Hdf5Output {
   std::unique_ptr<hdf5::NewFile> out;
   hdf5::File* file = nullptr;
   std::set<std::string> datasets;
-  std::set<std::string> written;  ///< datasets that have values of the mesh already
+  std::set<std::string> written;  ///< datasets to which values of the mesh have been written
   int next_array = 0;             ///< lowest number that may be free for a dataset /Attributes/NUMBER
 };
 
-/// See `write` and `SplitFile`.
+/// Writes the files of a layout: see `write` and `SplitFile`.
 class Writer {
  public:
   /// `rows`: the cells of each part.
@@ -46,9 +46,9 @@ class Writer {
          const FilePath& path, Notes& notes);
   /// Writes the file and the files of values that it names.
   void write();
-  /// See `SplitFile`; `mark` is the result of `mark_of` for its checksum.
+  /// See `SplitFile`; `mark` is `mark_of(checksum)`.
   std::string write_without_values(const std::filesystem::path& data, const std::string& mark);
-  /// Returns the new name of an HDF5 file of the old XML: it follows the name of the new .xdmf file.
+  /// Returns the new name of an HDF5 file that the old XML names; it follows the name of the new .xdmf file.
   [[nodiscard]] std::string new_name(const std::string& old_name) const;
 
  private:
@@ -62,7 +62,7 @@ class Writer {
 
   // values of one DataItem: value_writer.cpp
   static void set_shape(pugi::xml_node item, const std::vector<std::uint64_t>& shape);
-  /// Returns the shape of values at a place in rows of `components`; the old shape if it fits.
+  /// Returns the shape of `count` values at a place: the old shape if it fits, else rows of `components`.
   std::vector<std::uint64_t> shape_at(const DataPlace& place, std::size_t count, std::size_t components);
   /// Returns whether another field has written other values to the dataset of a place: an array on cells and
   /// one on vertices may share a dataset. From the first call on, the dataset counts as written.
@@ -71,17 +71,17 @@ class Writer {
   /// shape.
   static std::vector<std::uint64_t> describe(pugi::xml_node item, const Values& values,
                                              std::size_t components);
-  /// Writes values to a dataset that no other field has, and names it in the DataItem. `file`: the name in
-  /// the old XML.
+  /// Writes values to a dataset that no other field has, and names the dataset in the DataItem. `file`: its
+  /// name in the old XML.
   void put_apart(pugi::xml_node item, const std::string& file, const std::string& dataset,
                  const Values& values, const std::vector<std::uint64_t>& shape);
   /// Returns the DataItems that have the values of a place.
   [[nodiscard]] std::vector<pugi::xml_node> items_at(const DataPlace& place) const;
   /// Writes values to a place in their own number type, in rows of `components` values.
   void put(const DataPlace& place, const Values& values, std::size_t components);
-  /// Writes indices to a place in its number type, unless that type is too narrow.
+  /// Writes indices to a place in the place's number type, or as 32-bit integers if that type is narrower.
   void put_indices(const DataPlace& place, std::span<const Index> indices, std::size_t components);
-  /// Writes the name of a dataset to the XML of a made layout; `rename_files` replaces the file's name in it.
+  /// Records a dataset; in a made layout, names it in the XML. `rename_files` then replaces the file's name.
   void name_dataset(const DataPlace& place);
   void put_binary(pugi::xml_node item, const DataPlace& place, const Values& values);
   static std::string text_of_values(const Values& values, std::size_t components);
@@ -94,21 +94,21 @@ class Writer {
   void write_field(const Field& field);
   void write_points(const Field& field);
   void write_topology(const Field& field);
-  /// Writes to the Topology of a field the number of cells that follows from the field's shape.
+  /// Writes the number of cells, which follows from a field's shape, to the field's Topology.
   void announce_cells_of(const Field& field) const;
   /// Writes the number of cells to a Topology.
   void announce_cells(pugi::xml_node topology, std::uint64_t cells) const;
   /// Returns whether the cell is a linear wedge whose first triangle faces outward in the file.
   [[nodiscard]] bool is_turned(Index c) const;
-  /// Returns the type of these cells, null if they have several types.
+  /// Returns the type of these cells, null if they have several types or there are none.
   [[nodiscard]] const TopologyType* common_type(const std::vector<Index>& rows) const;
-  /// Returns the entries of a Topology.
+  /// Returns the values of a Topology of these cells; if it is mixed, each cell's type precedes its points.
   [[nodiscard]] std::vector<Index> numbers_of(const std::vector<Index>& rows, bool mixed, int base) const;
   void write_array(const Field& field);
   void write_set(const Field& field);
   /// Removes the Attributes and Sets of `gone_`, and their datasets unless other elements name them.
   void remove_gone();
-  /// Returns the row of each cell in a part, −1 for cells of other parts.
+  /// Returns the row of each cell in the part with the cells `rows`; −1 for other cells.
   [[nodiscard]] std::vector<Index> places_in(const std::vector<Index>& rows) const;
   /// Returns the values of an array for all vertices or for the cells of a part; nullopt if the array already
   /// has exactly these values. Notes rows that the array lacks.
@@ -118,7 +118,7 @@ class Writer {
   /// Returns the array of marks of the set that "set:NAME" names; nullopt if there is no such set.
   [[nodiscard]] std::optional<DataArray> marks_named(const std::string& name, Association association) const;
   void add_others();
-  /// Returns the sets that the layout has a field for.
+  /// Returns the sets for which the layout has a part or a field; none for a made layout.
   [[nodiscard]] std::set<std::pair<Association, std::string>> placed_sets() const;
   void add_ids(const std::vector<std::int64_t>& ids, const char* name, Association association);
   void add_array(const DataArray& array);

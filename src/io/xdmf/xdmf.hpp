@@ -5,7 +5,7 @@
 //
 // Format: the XDMF project's "XDMF Model and Format", https://www.xdmf.org/index.php/XDMF_Model_and_Format.
 // The numbers of topology types are those of XDMF's own library (XdmfTopologyType.cpp). Nodes of cells are in
-// VTK's order: VTK's readers take them as they are (IO/Xdmf2/vtkXdmfHeavyData.cxx).
+// VTK's order: VTK's readers do not reorder them (IO/Xdmf2/vtkXdmfHeavyData.cxx).
 
 #include "io/file_layout.hpp"
 #include "io/format.hpp"
@@ -23,7 +23,6 @@ namespace meshorder::xdmf {
 
 // ---- types of cells
 
-/// A topology type.
 struct TopologyType {
   std::string_view name;
   int number;  ///< number in mixed topologies
@@ -36,13 +35,13 @@ inline constexpr int kPolyvertex = 1;
 inline constexpr int kPolyline = 2;
 inline constexpr int kMixed = 0x70;
 
-/// Returns the type of that name in any case, null if there is none; knows the short names of XDMF 2.
+/// Returns the type of a name in upper or lower case, also a short name of XDMF 2; null if there is none.
 const TopologyType* topology_type(std::string_view name);
 /// Returns the type of that number, null if there is none.
 const TopologyType* topology_type(std::int64_t number);
 /// Returns the type of cells of this shape, null if there is none.
 const TopologyType* topology_type_of(Shape shape, int vertices);
-/// Returns VTK's number for cells of a type with so many nodes.
+/// Returns VTK's type number for cells of a type with `nodes` nodes.
 int vtk_type(const TopologyType& type, std::int64_t nodes);
 
 /// Returns whether XDMF has a type for these cells. Node orders above second order are known for meshes from
@@ -102,8 +101,7 @@ XdmfLayout layout_of(const Mesh& mesh, const FilePath& path);
 /// Name of the element <Information> that marks a Grid which `layout_of` added: readers make no set of this
 /// Grid.
 inline constexpr std::string_view kAdded = "cells of a lower dimension";
-/// Returns the value of `TopologyPart::below` for a Grid that `layout_of` added, by its name; 0 for any other
-/// name.
+/// Returns `TopologyPart::below` for the name of a Grid that `layout_of` added; 0 for any other name.
 int below_of(std::string_view grid);
 
 /// Returns the cells of each part, in the order of the file.
