@@ -405,7 +405,7 @@ void add_info(CLI::App& subcommand) {
       "Run the kernels for a few seconds on a mesh of any size, and predict their times, too");
   subcommand
       .add_flag("--predict", arguments->predict,
-                "Predict the gain for a mesh of any size. The first call calibrates this machine")
+                "Predict the gain for up to 100 million simplices. The first call calibrates this machine")
       ->excludes(measure);
   add_kernels_option(subcommand, arguments->kernels);
   for (const char* const on_processors :

@@ -323,12 +323,12 @@ void write_nodes_4(NumberWriter& sink, const WriteContext& output) {
             parameters && (*parameters)[2 * at] != 0 ? 1 : 0};
   };
 
-  // successive nodes of one entity form a block: this keeps the order of the mesh
   const auto write_point = [&](RowWriter& to, const EmptyBlock& block, Index v) {
     to.all(mesh.points[v]);
     const int given = block[2] == 1 ? parameters_4(output.layout, block[0]) : 0;
     for (int k = 0; k < given; ++k) to.real((*parameters)[4 * static_cast<std::size_t>(v) + 1 + k]);
   };
+  // successive nodes of one entity form a block: this keeps the order of the mesh
   const std::vector<Index> starts = runs(mesh.vertex_count(), head, [](Index) { return false; });
   const auto& empty = output.layout.empty_node_blocks;
   write_head(sink, output, starts.size() - 1 + empty.size(), mesh.vertex_count(), output.node_ids);
