@@ -9,8 +9,8 @@
  * their end; functions and the values of constants do not change.
  *
  * Every function returns MO_OK or the status of its failure, unless stated otherwise. After a failure
- * `mo_last_error` returns a sentence, and outputs are unspecified. Several threads may call all functions
- * at once. No function throws, and a callback must not throw or longjmp.
+ * `mo_last_error` returns the reason as a sentence, and outputs are unspecified. Several threads may call
+ * functions at once. No function throws, and a callback must not throw or longjmp.
  */
 
 #include <stddef.h>
@@ -90,11 +90,11 @@ typedef struct mo_options {
   int32_t threads;      /**< most threads; 0 (default): as many as TBB would use */
   int32_t base;         /**< first offset and first vertex number, of inputs and outputs; 0 (default) or 1 */
   int32_t check;        /**< MO_CHECK_...; default MO_CHECK_FULL */
-  int32_t symmetrize;   /**< non-zero: take the pattern of A + A^T; default 0: refuse asymmetric input */
+  int32_t symmetrize;   /**< non-zero: order the pattern of A + A^T; default 0: refuse asymmetric input */
   mo_in start;          /**< an estimate of the Fiedler vector: n numbers, or none */
   mo_in groups;         /**< group of each vertex, or none; groups stay together and ascend */
-  /** meshorder calls it now and then on the calling thread, with the name of the stage and the fraction done:
-   * 0 ... 1, or -1 if unknown. A non-zero result stops the call. */
+  /** Called now and then on the calling thread, with the name of the stage and the fraction done: 0 ... 1, or
+   * -1 if unknown. A non-zero result stops the call. */
   int32_t (*progress)(void* user, const char* stage, double fraction);
   void* user;             /**< passed to `progress` */
   int32_t max_iterations; /**< of the eigensolver, >= 1; default 500 */
@@ -129,7 +129,7 @@ MO_API void mo_options_init(mo_options* options, size_t struct_size);
  * @param offsets     n + 1, ascending, the first is `base`
  * @param neighbours  (offsets[n] - base) vertex numbers, from `base` on; loops and repeats are ignored
  * @param weights     one positive number for each neighbour, or null; fiedler uses them
- * @param points      dimension * n coordinates x y z x y z ... for geometric methods, or null
+ * @param points      dimension * n coordinates x y z x y z ..., or null; geometric methods need them
  * @param dimension   1 to 3; not used without points
  * @param options     or null
  * @param new_to_old  n integers, or null: the old number of the vertex at each new place, from `base` on
@@ -166,11 +166,11 @@ MO_API mo_status mo_order_mesh(const mo_in* cell_offsets, const mo_in* cell_vert
                                mo_result* cell_result);
 
 /**
- * Orders edges by the larger place of their two ends, then by the smaller one. A loop over them then reaches
- * the vertices nearly in their new order. The function does not change `ends`.
+ * Orders edges by the larger of the new places of their two ends, then by the smaller place. A loop over the
+ * edges then reaches the vertices nearly in their new order. The function does not change `ends`.
  *
  * @param ends               2 for each edge, from `base` on: old numbers, so call this function before you
- *                           renumber them. If they are renumbered already, pass the identity
+ *                           renumber the ends. If the ends are renumbered already, pass the identity
  *                           (base, base + 1, ...) as `vertex_new_to_old`
  * @param vertex_new_to_old  the order of the vertices, a bijection from `base` on
  * @param base               0 or 1
@@ -193,11 +193,11 @@ enum {
 /**
  * Makes a reorderer. Destroy it by `mo_reorderer_destroy`.
  *
- * @param options         options of its orders, or null; its arrays must be empty, and `progress` and `user`
- *                        must stay valid
- * @param slack           share, >= 0, by which the mean span of edges may exceed that of the last fresh
- *                        order; beyond that, a new order is computed. For points without edges, the span may
- *                        exceed that value by slack * log2(number of points). Usual: 0.02
+ * @param options         options of every order, or null; `start`, `groups` and `cell_groups` must be empty,
+ *                        and `progress` and `user` must stay valid
+ * @param slack           share, >= 0, by which the mean log2 of the edges' spans may exceed that in the last
+ *                        fresh order before a new order is computed. For points without edges, the limit is
+ *                        that mean + slack * log2(number of points). Usual: 0.02
  * @param budget_seconds  >= 0; no new order is computed if the last one took longer; infinity: no limit
  * @param reorderer       written; null after a failure
  */
@@ -208,8 +208,8 @@ MO_API mo_status mo_reorderer_create(const mo_options* options, double slack, do
 MO_API void mo_reorderer_destroy(mo_reorderer* reorderer);
 
 /**
- * Brings the order up to date. Call it when connectivity or positions have changed, and move all arrays by
- * the result.
+ * Brings the order up to date. Call this function when connectivity or positions have changed, and move all
+ * arrays by the result.
  *
  * @param reorderer   made by `mo_reorderer_create`
  * @param offsets     n + 1, ascending, the first is the base of the options; null if there are only points
@@ -231,8 +231,8 @@ MO_API mo_status mo_reorderer_update(mo_reorderer* reorderer, const mo_in* offse
 MO_API mo_status mo_reorderer_observe(mo_reorderer* reorderer, double step_seconds);
 
 /**
- * Computes the Fiedler vector of every connected component. It has norm 1 and sum 0 in each component;
- * isolated vertices have 0.
+ * Computes the Fiedler vector of every connected component. Each vector has norm 1 and sum 0; isolated
+ * vertices have 0.
  *
  * @param offsets     n + 1, ascending, the first is `base`
  * @param neighbours  (offsets[n] - base) vertex numbers, from `base` on; loops and repeats are ignored
@@ -260,10 +260,10 @@ MO_API mo_status mo_move(const mo_in* new_to_old, int32_t base, const void* from
  * Layouts for graphics processors, where many threads work on cells at once. Order the mesh first: layouts
  * keep the order of cells and vertices.
  *
- * All functions take cells as `mo_order_mesh` does, `vertex_count` >= 0, and options or null. Of the options
- * they use `base`, `threads`, `progress` and `user`. Edges are cells with two vertices. Cell numbers, vertex
- * numbers and offsets start at the base; `local` and `corners` start at 0. The library owns the structures
- * and their arrays; they are valid until the call that destroys them. Do not write to them.
+ * Cells are given as to `mo_order_mesh`; `vertex_count` is >= 0, and `options` may be null. Of the options,
+ * `base`, `threads`, `progress` and `user` are used. Edges are cells with two vertices. Cell numbers,
+ * vertex numbers and offsets start at the base; `local` and `corners` start at 0. The library owns the
+ * structures and their arrays, which are valid until the call that destroys them. Do not write to them.
  */
 
 /** Cells in patches of `size`, one patch for each block of threads. The block loads the patch's vertices into
@@ -297,7 +297,7 @@ MO_API mo_status mo_patches_create(const mo_in* cell_offsets, const mo_in* cell_
 /** Destroys patches; does nothing for a null pointer. */
 MO_API void mo_patches_destroy(const mo_patches* made);
 
-/** The cells at each vertex. A vertex sums their contributions without atomic additions. */
+/** The cells at each vertex, so that each vertex sums the contributions of its cells without atomics. */
 typedef struct mo_gather_lists {
   const int64_t* offsets; /**< vertex_count + 1: where the entries of each vertex begin */
   const int32_t* cells;   /**< the cells of each vertex, ascending */
@@ -364,8 +364,8 @@ MO_API mo_status mo_sort_corners(const mo_in* cell_offsets, const mo_in* cell_ve
 typedef struct mo_gpu_counts {
   size_t struct_size;
   int64_t requests; /**< additions, or loads and stores; one request serves the 32 threads of a warp */
-  int64_t sectors; /**< 32-byte sectors that requests touch; counted t times if t threads add to one number */
-  int64_t floor;   /**< value of `sectors` if each warp's numbers were all different and side by side */
+  int64_t sectors;  /**< 32-byte sectors that requests touch; counted t times if t threads add to one value */
+  int64_t floor;    /**< `sectors` if the values that each warp touches were all different and side by side */
   int64_t dram_bytes; /**< bytes that the last cache reads from memory */
   int64_t dram_floor; /**< `dram_bytes` if each number were read once */
 } mo_gpu_counts;
@@ -378,8 +378,8 @@ typedef struct mo_gpu_counts {
  * @param cell_vertices  vertices of the cells, from `base` on
  * @param vtk_types      VTK's type of each cell, or null: all cells of one dimension
  * @param vertex_count   n
- * @param layout         "packed": three numbers of a vertex side by side; "apart": in three arrays; "padded":
- *                       four numbers of a vertex side by side, added at once; "patches": as "packed", in
+ * @param layout         "packed": three values of a vertex side by side; "apart": in three arrays; "padded":
+ *                       four values of a vertex side by side, added at once; "patches": as "packed", in
  *                       patches of 256 cells; "gathered": two passes by gather lists
  * @param cache_bytes    size of the last cache; 0: 50 MiB
  * @param options        or null
@@ -395,7 +395,7 @@ MO_API mo_status mo_gpu_cost(const mo_in* cell_offsets, const mo_in* cell_vertic
  *
  * @param offsets      n + 1, ascending, the first is the base
  * @param neighbours   (offsets[n] - base) vertex numbers, from the base on; a symmetric pattern
- * @param lanes        threads of a row: 1, 2, 4, 8, 16 or 32
+ * @param lanes        threads per row: 1, 2, 4, 8, 16 or 32
  * @param cache_bytes  size of the last cache; 0: 50 MiB
  * @param options      or null
  * @param counts       written
@@ -419,12 +419,12 @@ MO_API const char* mo_method_name(int32_t k);
  * @param neighbours  ascending in each row, no loops, no repeats, symmetric
  * @param xyz         3 n coordinates, or null
  * @param new_to_old  n numbers, written by the method: a bijection of 0 ... n-1
- * @return 0 for success; with any other number the call that requested the order fails with MO_INTERNAL
+ * @return 0 for success; after any other number, the call that requested the order fails with MO_INTERNAL
  */
 typedef int32_t (*mo_method)(void* user, int64_t n, const int64_t* offsets, const int32_t* neighbours,
                              const double* xyz, int32_t* new_to_old);
 
-/** Type of `mo_register`; meshorder passes that function to a plug-in. */
+/** Type of the function that meshorder passes to a plug-in; it has the parameters of `mo_register`. */
 typedef mo_status (*mo_register_fn)(const char* name, const char* description, int32_t needs_points,
                                     mo_method method, void* user);
 

@@ -28,9 +28,9 @@ typedef struct mo_mpi_mesh {
   int64_t vertex_count;         /**< vertices that this rank owns; >= 0 */
   int64_t cell_count;           /**< elements that this rank has; >= 0 */
   const int64_t* cell_offsets;  /**< cell_count + 1, ascending from 0; null without elements */
-  const int64_t* cell_vertices; /**< numbers of their vertices, whichever rank owns these */
+  const int64_t* cell_vertices; /**< numbers of the elements' vertices, own or of other ranks */
   const double* points;         /**< x y z of each own vertex; or null on all ranks */
-  int64_t cell_vertex_count;    /**< length of cell_vertices: where the offsets end */
+  int64_t cell_vertex_count;    /**< length of cell_vertices: the last offset; 0 without elements */
   int64_t coordinate_count;     /**< length of points: 3 * vertex_count, 0 without points */
 } mo_mpi_mesh;
 
@@ -38,15 +38,15 @@ typedef struct mo_mpi_mesh {
  * MO_INVALID_ARGUMENT. `mo_mpi_options_init` fills in the defaults; a null pointer means the defaults. */
 typedef struct mo_mpi_options {
   size_t struct_size;     /**< sizeof(mo_mpi_options) of the caller */
-  const char* method;     /**< vertex method of a part; null: "spectral" */
+  const char* method;     /**< vertex method for each rank or part; null: "spectral" */
   const char* partition;  /**< how to cut: "ptscotch" (null), "hilbert", "rsb", or "order": equal ranges
                              of one order of the whole mesh, by the method "fiedler" only */
   const char* balance;    /**< every part gets equally many "vertices" (null) or "cells" */
   uint64_t seed;          /**< of the method; default 0 */
   int32_t parts;          /**< at most the number of vertices; 0 (default): one for each rank */
   int32_t threads;        /**< of this rank; default 1 */
-  int32_t interface_last; /**< non-zero: vertices that share an element with those of other ranks or parts
-                             come after the others; default 0 */
+  int32_t interface_last; /**< non-zero: vertices that share an element with vertices of other ranks or
+                             parts come last; default 0 */
   int32_t reserved;       /**< 0 */
 } mo_mpi_options;
 
@@ -71,8 +71,8 @@ MO_API mo_status mo_mpi_order_ranks(int32_t communicator, const mo_mpi_mesh* mes
                                     const mo_mpi_options* options, int64_t* new_numbers, int64_t* cell_order);
 
 /**
- * Cuts the mesh into parts, orders each, and numbers them one after another, so that touching parts are
- * near each other. The caller has to move vertices and elements to their new owners.
+ * Cuts the mesh into parts, orders each part, and numbers the parts one after another, so that touching
+ * parts get nearby numbers. The caller has to move vertices and elements to their new owners.
  *
  * Needs coordinates. Each element must be on exactly one rank. Without MPI_THREAD_MULTIPLE
  * "hilbert" replaces "ptscotch".
@@ -83,15 +83,15 @@ MO_API mo_status mo_mpi_order_ranks(int32_t communicator, const mo_mpi_mesh* mes
  * @param new_numbers   vertex_count numbers: the new number of each own vertex
  * @param part_starts   parts + 1 numbers: the first new number of each part, then the end of the last part;
  *                      vertices that no element uses have the numbers from that end on
- * @param cell_parts    cell_count numbers, or null: the part of each element, which is that of its vertex
- *                      with the largest new number
+ * @param cell_parts    cell_count numbers, or null: the part of each element, which is the part of the
+ *                      element's vertex with the largest new number
  */
 MO_API mo_status mo_mpi_order_parts(int32_t communicator, const mo_mpi_mesh* mesh,
                                     const mo_mpi_options* options, int64_t* new_numbers, int64_t* part_starts,
                                     int64_t* cell_parts);
 
-/** Returns the message of this thread's last failure in one of these functions, "" if there was none. Valid
- * until this thread's next call. */
+/** Returns the message of this thread's last failure in one of these functions, or "" if there was none.
+ * Valid until this thread's next call. */
 MO_API const char* mo_mpi_last_error(void);
 
 #ifdef __cplusplus

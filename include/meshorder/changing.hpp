@@ -39,8 +39,8 @@ struct ReordererOptions {
   /// Name of a vertex method. `auto` chooses one for the first mesh, as `order_vertices` does (`hilbert` for
   /// points alone), and moves nothing if the present numbering is as good.
   std::string method = "auto";
-  /// Share, ≥ 0, by which `Update::span_log2` may exceed that of the last fresh order before a new order is
-  /// computed. For points alone, `span_log2` may exceed that value by `slack` · log₂ n.
+  /// Share, ≥ 0, by which `Update::span_log2` may exceed `Update::fresh_span_log2` before a new order is
+  /// computed. For points alone, the limit is that value + `slack` · log₂ n.
   double slack = 0.02;
   /// Seconds, ≥ 0: no new order is computed if the last one took longer.
   double budget_seconds = std::numeric_limits<double>::infinity();
@@ -54,7 +54,7 @@ struct Update {
   std::string reason = {};  ///< why a new order was computed or not, a sentence
   /// Distance of neighbours in the order: the mean of ⌊log₂ |i − j|⌋ over the edges of one in 16 vertices of
   /// a graph, or one in 16 cells of a mesh. For points alone, the mean of log₂ (1 + distance of a point from
-  /// its place on the curve) over a sample. Compare it only with values of the same method.
+  /// its place on the curve) over a sample. Compare only values of the same method.
   double span_log2 = 0;
   double fresh_span_log2 = 0;  ///< `span_log2` right after the last search for a new order
   Index added = 0;             ///< vertices that are new
@@ -67,10 +67,9 @@ struct Update {
 /// Keeps the order of a changing mesh, graph or set of particles up to date.
 ///
 /// Call `update` whenever connectivity or positions have changed, and move all arrays by its permutation. The
-/// arrays then have the last order, so this object does not store it. Most updates only read a sample of the
-/// rows, and move nothing. A new order is computed when neighbours are too far apart, and now and then to
-/// test whether it would be better: first after 10 updates, then half as often after each test that finds no
-/// better order.
+/// arrays then have the last order, so this object does not store the order. Most updates only read a sample
+/// of the rows, and move nothing. A new order is computed when neighbours are too far apart, and as a test
+/// after some updates: 10 at first, twice as many after each test that finds no better order.
 ///
 /// For elements, call `order_elements` with the method `max` after every change of connectivity; this saves
 /// time from the first step on.
@@ -103,7 +102,7 @@ class MESHORDER_API Reorderer {
   ///       method.
   Update update(const GraphView& graph, const PointsView& points = {}, const IndexView& previous = {});
 
-  /// The same for a mesh. Builds its graph only to compute an order anew.
+  /// The same for a mesh. Builds the mesh's graph only to compute an order anew.
   Update update(const MeshView& mesh, const IndexView& previous = {});
 
   /// The same for points alone, such as particles, by `hilbert` or `morton`.
@@ -116,7 +115,7 @@ class MESHORDER_API Reorderer {
   /// last new order, where `slope` is the growth of the duration from one step to the next. Optional.
   ///
   /// @param step_seconds  ≥ 0 and finite
-  /// @throws InvalidArgument otherwise
+  /// @throws InvalidArgument for other durations
   void observe(double step_seconds);
 
   /// Returns the state, for a checkpoint; `restore` continues from it.

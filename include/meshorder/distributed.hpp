@@ -21,14 +21,14 @@ inline namespace v0_3 {
 struct RankMesh {
   std::int64_t vertex_count = 0;                    ///< vertices that this rank owns
   std::span<const std::int64_t> cell_offsets = {};  ///< elements + 1, ascending from 0; none: no elements
-  /// Numbers of the elements' vertices, whichever rank owns these.
+  /// Numbers of the elements' vertices, own or of other ranks.
   std::span<const std::int64_t> cell_vertices = {};
   std::span<const double> points = {};  ///< x y z of each own vertex, also in 2D; or none on all ranks
 };
 
 /// Options of a call. All but `threads` must be the same on all ranks.
 struct RankOptions {
-  std::string method = "spectral";  ///< vertex method of a part, see `vertex_methods`
+  std::string method = "spectral";  ///< orders each rank or part, see `vertex_methods`
   /// How `order_parts` makes the parts: "ptscotch", "hilbert", "rsb" (recursive spectral bisection), or
   /// "order" (equal ranges of one order of the whole mesh, by the method "fiedler" only).
   std::string partition = "ptscotch";
@@ -36,7 +36,7 @@ struct RankOptions {
   std::uint64_t seed = 0;
   std::int32_t parts = 0;    ///< for `order_parts`, at most the number of vertices; 0: one for each rank
   std::int32_t threads = 1;  ///< number of threads of this rank
-  /// Whether vertices come last if they share an element with vertices of other ranks or parts.
+  /// Whether the vertices that share an element with vertices of other ranks or parts come last.
   bool interface_last = false;
 };
 
@@ -47,7 +47,7 @@ struct RankOrder {
   std::vector<std::int64_t> cell_order;
 };
 
-/// Parts of a mesh in their order, and the order of their vertices.
+/// The parts of a mesh, one after another, and the new numbers of the vertices.
 struct PartOrder {
   std::vector<std::int64_t> new_numbers;  ///< new number of each owned vertex
   /// First new number of each part, then the end of the last part; the same on all ranks. Vertices that no
@@ -93,14 +93,14 @@ inline void throw_unless_ok(mo_status status) {
 }  // namespace detail
 
 /// Orders the vertices of every rank among themselves: each stays with its owner. A rank's order begins near
-/// the rank before it and ends near the rank after it, as far as possible. Every rank has to call it.
+/// the rank before it and ends near the rank after it, as far as possible. All ranks must call this function.
 ///
 /// @param communicator  of the ranks that share the mesh
 /// @param mesh          of this rank. An element may be on several ranks (ghost layers); each rank orders all
 ///                      elements that it has
 /// @param options       the same on all ranks; `parts`, `partition` and `balance` are not used
-/// @throws Error on all ranks if one fails: for an unknown method, for options that differ between ranks, for
-///         vertex numbers that do not exist, or for a geometric method without coordinates
+/// @throws Error on all ranks if one fails, such as for an unknown method, for options that differ between
+///         ranks, for vertex numbers that do not exist, or for a geometric method without coordinates
 /// @note The same mesh on the same ranks gives the same order. Memory: O(Σ (vertices of an element)²) for the
 ///       graph, plus the memory of the method.
 inline RankOrder order_ranks(MPI_Comm communicator, const RankMesh& mesh, const RankOptions& options = {}) {
@@ -114,9 +114,9 @@ inline RankOrder order_ranks(MPI_Comm communicator, const RankMesh& mesh, const 
   return order;
 }
 
-/// Cuts the mesh into parts, orders each, and numbers them one after another, so that touching parts are
-/// near each other. The caller has to move vertices and elements to their new owners. Every rank has to
-/// call it.
+/// Cuts the mesh into parts, orders each part, and numbers the parts one after another, so that touching
+/// parts get nearby numbers. The caller has to move vertices and elements to their new owners. All ranks must
+/// call this function.
 ///
 /// @param communicator  of the ranks that share the mesh
 /// @param mesh          of this rank, with coordinates; each element on one rank

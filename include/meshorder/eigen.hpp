@@ -126,13 +126,13 @@ template <class V, class F>
   return order_mesh(points, cells, detail::shape_by_columns(points, cells), methods, options);
 }
 
-/// Orders edges by the larger new number of their ends, as `order_edges` does for a list of ends.
+/// Orders edges by the larger of their ends' new numbers, as `order_edges` does for a list of ends.
 ///
 /// @param edges     E: m × 2 old numbers in 0 … n − 1, a row for each edge
 /// @param vertices  order of the n vertices
 /// @param run       threads, progress
-/// @return permutation of the m edges: first move the edges by it (`move_rows`), then `renumber` their ends
-///         by `vertices`
+/// @return permutation of the m edges: move the edges by this permutation (`move_rows`), then `renumber`
+///         their ends by `vertices`
 /// @throws InvalidArgument for another number of columns, and as `order_edges`
 template <class E>
 [[nodiscard]] Permutation order_edges(const Eigen::DenseBase<E>& edges, const Permutation& vertices,
@@ -145,7 +145,7 @@ template <class E>
   return order_edges(IndexView(rows.data(), rows.size()), vertices, run);
 }
 
-/// Moves the rows of a matrix or vector to their new places, for values of vertices or of cells.
+/// Moves the rows of a matrix or vector, such as values of vertices or cells, to their new places.
 ///
 /// @param permutation  of n places
 /// @param values       n × k, in either storage order; of a trivially copyable type

@@ -26,8 +26,7 @@ enum class Code : int {
 /// Base class of all exceptions that meshorder throws, besides `std::bad_alloc`.
 ///
 /// Exceptions of a user's callback (progress, companion, own method) pass through unchanged. After an
-/// exception the inputs have the values that they had before the call; outputs are
-/// unspecified.
+/// exception the inputs have the values that they had before the call; outputs are unspecified.
 class MESHORDER_API Error : public std::runtime_error {
  public:
   /// @param code     kind of the failure; this class itself is thrown for `Code::io`
@@ -75,14 +74,14 @@ class MESHORDER_API InputError : public Error {
   std::shared_ptr<const Location> location_;  // shared: copying an exception must not throw
 };
 
-/// Thrown if numbers do not fit: 2³¹ or more vertices, cells or degrees of freedom; 2³¹ or more entries if
-/// METIS has 32-bit integers; a result that the caller's integer type cannot hold.
+/// Thrown for 2³¹ or more vertices, cells or degrees of freedom, or entries if METIS has 32-bit integers; for
+/// a result that the caller's integer type cannot hold; for a graph beyond the memory limit.
 struct MESHORDER_API TooLarge : Error {
   explicit TooLarge(const std::string& message) : Error(Code::too_large, message) {}
 };
 
-/// Thrown for a method or a compression that this build lacks; the message names the build option that adds
-/// it.
+/// Thrown for a method, a format or a compression that this build lacks (the message names the build option),
+/// and for a library or plug-in that cannot be loaded.
 struct MESHORDER_API Unavailable : Error {
   explicit Unavailable(const std::string& message) : Error(Code::unavailable, message) {}
 };

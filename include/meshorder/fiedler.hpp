@@ -25,8 +25,8 @@ struct FiedlerComponent {
 
 /// The Fiedler vectors of all connected components of a graph.
 struct Fiedler {
-  /// n entries. In each component ‖x‖₂ = 1 and Σ x = 0; an isolated vertex has 0. Its sign: among the entries
-  /// with at least half the largest magnitude, the first one is negative.
+  /// n entries. In each component ‖x‖₂ = 1 and Σ x = 0; an isolated vertex has 0. The first entry with at
+  /// least half the component's largest magnitude is negative.
   std::vector<double> values;
   std::vector<FiedlerComponent> components;  ///< largest first, ties by their smallest vertex
   std::vector<Index> component_of;           ///< n entries: position in `components`
@@ -38,12 +38,12 @@ struct Fiedler {
 ///
 /// The Fiedler vector is the eigenvector of the second-smallest eigenvalue of the combinatorial Laplacian L =
 /// D − A (Fiedler 1973, Algebraic connectivity of graphs). A dense eigensolver solves components of up to 60
-/// vertices. Larger ones are coarsened by aggregation and solved level by level, coarsest first, by LOBPCG
-/// (Knyazev 2001, Toward the optimal preconditioned eigensolver).
+/// vertices. Larger components are coarsened by aggregation and solved level by level, coarsest first, by
+/// LOBPCG (Knyazev 2001, Toward the optimal preconditioned eigensolver).
 ///
 /// @param graph    n vertices; weights > 0 or none, the largest at most 1e100 times the smallest
 /// @param options  tolerance, max_iterations, seed, start, check, symmetry and run; others are ignored. The
-///                 default tolerance of 0.1 suffices for an order; take 1e-8 if the values themselves matter
+///                 default tolerance of 0.1 suffices for an order; use 1e-8 if the values themselves matter
 /// @return the vectors, and a report for each component. A component that does not converge keeps its best
 ///         vector, with `converged` false; that is not an error
 /// @throws InvalidArgument if `check` refuses the graph, or if `start` has a size other than 0 and n or an

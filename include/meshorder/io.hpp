@@ -43,23 +43,23 @@ struct ReadOptions {
   std::function<std::string(std::string_view name)> companion = {};
   Notes* notes = nullptr;  ///< receives warnings; null: they are dropped
   Run run = {};            ///< `threads`; readers report no progress
-  /// Limit in bytes on memory for data larger than its stored form: compressed or repeated values, sizes
+  /// Limit in bytes on memory for data that is larger than in the files: compressed or repeated values, sizes
   /// without values, ranges of numbers. If not set: 256 MiB plus 100 times the size of the mesh's files, but
   /// at most three quarters of the memory that this process may have.
   std::optional<std::uint64_t> memory_limit = {};
-  /// Folders, besides the file's own, from which other files that it names may be read. Links are resolved
+  /// Folders, besides the file's own, that may hold the other files that the file names. Links are resolved
   /// first.
   std::vector<std::filesystem::path> include_folders = {};
 };
 
 /// Reads a mesh from a file.
 ///
-/// An interrupted writer can leave files that do not belong together. They are refused if the format marks
-/// files of one mesh (TetGen, XDMF). Nothing is written.
+/// An interrupted writer can leave files that do not belong together. `read_mesh` refuses such files if the
+/// format marks the files of one mesh (TetGen, XDMF). Nothing is written.
 ///
-/// @param path     the file; any of them if the format has several
+/// @param path     the file; any of the files if the format has several
 /// @param options  see `ReadOptions`
-/// @return a mesh with at least one cell that `check_mesh` accepts
+/// @return a mesh that `check_mesh` accepts, with at least one cell
 /// @throws InputError for a file that is missing, faulty or without cells, with place and remedy; for more
 ///         than 2,147,483,647 vertices or cells; for data that exceed `options.memory_limit`; for names of
 ///         files in other folders; for an unknown extension (the message lists the known ones)
@@ -79,16 +79,16 @@ struct KeepOptions {
   /// Name of the format that the mesh will be written in; empty: none in particular.
   std::string format = {};
   int dimension = -1;      ///< keep the cells of this dimension only, 0 to 3; −1: of all dimensions
-  Notes* notes = nullptr;  ///< receives what was left out, one line for each cell type; null: dropped
+  Notes* notes = nullptr;  ///< receives what the format cannot hold, removed arrays and sets; null: dropped
 };
 
 /// Removes cells from a mesh: first the cells whose dimension is not the wanted one, then the cells that the
-/// format cannot hold. If one of the latter has the highest dimension, none of them is removed (`write_mesh`
-/// refuses such a mesh). Call it before `reorder`: the order and its permutations then describe the file that
-/// `write_mesh` makes.
+/// format cannot hold. The latter all stay if one has the highest dimension (`write_mesh` refuses such a
+/// mesh). Call this function before `reorder`: the permutations then describe the file that `write_mesh`
+/// makes.
 ///
 /// All vertices stay. Arrays, sets, ids and blocks follow the cells. A set, or an array on only some cells,
-/// is removed if none of its cells is left; `notes` reports that.
+/// is removed if none of its cells is left; `notes` names it.
 ///
 /// @param mesh     changed in place
 /// @param options  see `KeepOptions`
@@ -114,15 +114,15 @@ struct WriteOptions {
 ///               ACLs are kept as far as the system allows. Other hard links keep the old content; `notes`
 ///               reports that. Devices and pipes are written directly
 /// @param notes  receives what the format cannot hold; null: dropped
-/// @return the permutation of the mesh's cells to their places in the file; cells that are left out come
-///         last. It is the identity after `reorder` for that format
+/// @return the permutation that moves the mesh's cells to their places in the file; cells that are left out
+///         come last. After `reorder` for that format: the identity
 /// @throws InvalidArgument for a mesh that `check_mesh` refuses
 /// @throws InputError for an unknown extension, if the file cannot be written, and for cells of the highest
 ///         dimension that the format cannot hold (the message lists formats that can)
 MESHORDER_API Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path,
                                      Notes* notes = nullptr);
 
-/// The same with options; under `options.strict` throws InputError also for the first loss.
+/// The same with options; under `options.strict`, throws InputError also if anything would be left out.
 ///
 /// @note A strict call writes the mesh twice, first to memory.
 MESHORDER_API Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path,
@@ -151,7 +151,7 @@ struct MemoryFiles {
   Permutation cells;
 };
 
-/// Writes a mesh to memory; throws as `write_mesh`.
+/// Writes a mesh to memory; throws as `write_mesh`, and InvalidArgument for an unknown format.
 ///
 /// @param mesh    not changed
 /// @param format  name of the format

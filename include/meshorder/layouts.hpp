@@ -78,13 +78,12 @@ struct Colours {
   [[nodiscard]] std::size_t count() const noexcept { return starts.size() - 1; }
 };
 
-/// Colours cells, or edges as lines. Cells are taken in order. Each gets the first of 256 colours that no
-/// cell at its vertices has. If all 256 are taken, it gets the first colour after all colours at its
-/// vertices.
+/// Colours cells in their order; edges are lines. Each cell gets the first of 256 colours that no cell at its
+/// vertices has. If all 256 are taken, it gets the first colour after all colours at its vertices.
 ///
 /// @throws InvalidArgument for faulty cells; TooLarge as `patches`
-/// @note O(Σ vertices of a cell + n) on one thread, and 40 n bytes besides the result. The number of colours
-///       is at least the largest number of cells at a vertex.
+/// @note O(Σ vertices of a cell + n) on one thread. Memory besides the result: 40 bytes a vertex, 4 bytes a
+///       cell. The number of colours is at least the largest number of cells at a vertex.
 [[nodiscard]] MESHORDER_API Colours colours(const CellsView& cells, std::size_t vertex_count,
                                             const Run& run = {});
 
@@ -99,12 +98,12 @@ struct Colours {
 [[nodiscard]] MESHORDER_API std::vector<Index> sort_corners(const CellsView& cells, std::size_t vertex_count,
                                                             const Run& run = {});
 
-/// How a kernel stores the numbers of vertices, of 4 bytes each: the numbers that it reads for its cells, and
-/// the numbers that it adds to. `patches` and `gathered` have the three numbers of a vertex side by side.
+/// How a kernel stores the values of vertices, of 4 bytes each: those that it reads for its cells, and those
+/// that it adds to. `patches` and `gathered` have the three values of a vertex side by side.
 enum class GpuLayout {
-  packed,   ///< the three numbers of a vertex side by side, each added separately
-  apart,    ///< three arrays, one for each number
-  padded,   ///< four numbers of a vertex side by side, added at once
+  packed,   ///< the three values of a vertex side by side, each added separately
+  apart,    ///< three arrays, one for each of a vertex's values
+  padded,   ///< four values of a vertex side by side, added at once
   patches,  ///< as `packed`, in patches of 256 cells: each block adds once to each of its vertices
   gathered  ///< two passes: cells store 16 bytes per corner, then vertices sum these by their gather lists
 };
@@ -125,14 +124,14 @@ inline constexpr std::size_t kGpuCacheBytes = std::size_t{50} << 20;
 /// Cost of a kernel on a graphics processor.
 struct GpuCost {
   Offset requests = 0;  ///< additions, or loads and stores; one request serves the 32 threads of a warp
-  /// 32-byte sectors that these requests touch. If threads of a warp add to the same number in a sector, they
-  /// wait for each other: the sector counts t times, where t is the largest number of such threads.
+  /// 32-byte sectors that these requests touch. If t threads of a warp add to the same value, they wait for
+  /// each other, and the sector counts t times, for its largest t.
   Offset sectors = 0;
-  /// Value of `sectors` if the numbers that each warp touches at once were all different and side by side;
-  /// for patches, also if no vertex were in two patches.
+  /// What `sectors` would be if the values that each warp touches at once were all different and side by side
+  /// and, for patches, no vertex were in two patches.
   Offset floor = 0;
   Offset dram_bytes = 0;  ///< bytes that the last cache reads from memory
-  Offset dram_floor = 0;  ///< `dram_bytes` if each number were read once
+  Offset dram_floor = 0;  ///< what `dram_bytes` would be if each number were read once
 
   bool operator==(const GpuCost&) const = default;
 };
@@ -150,7 +149,7 @@ struct GpuCost {
 ///
 /// @param cells         cells with the same number of vertices; edges are lines
 /// @param vertex_count  n
-/// @param layout        where the numbers are
+/// @param layout        where the values of vertices are
 /// @param cache_bytes   size of the last cache, ≥ 1
 /// @param run           threads
 /// @throws InvalidArgument for faulty cells, cells of several types and a cache of 0 bytes; for the layouts
@@ -168,7 +167,7 @@ struct GpuCost {
 /// as by NVIDIA's compiler. The counters of an NVIDIA H100 showed the same numbers (docs/gpu.md).
 ///
 /// @param graph        the pattern of the matrix, which is symmetric
-/// @param lanes        threads of a row: 1, 2, 4, 8, 16 or 32
+/// @param lanes        threads per row: 1, 2, 4, 8, 16 or 32
 /// @param cache_bytes  size of the last cache, ≥ 1
 /// @param run          threads
 /// @throws InvalidArgument for another value of `lanes`, for a cache of 0 bytes, and as `quality`; TooLarge

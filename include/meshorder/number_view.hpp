@@ -22,7 +22,7 @@ using Offset = std::int64_t;
 /// A read-only view of the caller's integers: signed or unsigned, of 32 or 64 bits.
 ///
 /// Converts implicitly from contiguous ranges of such integers (std::vector, std::span, std::array, C arrays)
-/// and from contiguous ranges of std::array of them, which it flattens: 10 tetrahedra as
+/// and from contiguous ranges of std::array of such integers, which the view flattens: 10 tetrahedra as
 /// `std::vector<std::array<int, 4>>` are 40 numbers. bool, character types and other sizes do not compile.
 ///
 /// @note Nothing is copied: the array must live, at the same address, as long as the view is used. Functions
@@ -127,7 +127,7 @@ class IndexSpan {
 };
 
 /// A read-only view of the caller's real numbers, float or double. Converts implicitly from contiguous ranges
-/// of them. Lifetime as of `IndexView`.
+/// of such numbers. Lifetime: see `IndexView`.
 class RealView {
  public:
   /// A view of no numbers.

@@ -22,7 +22,7 @@ enum class Workload : std::uint8_t {
   springs,    ///< a force along every edge
   bandwidth,  ///< the bandwidth of the matrix, for banded and skyline solvers
   fill,       ///< few non-zeros in the factors of the matrix, for sparse direct solvers
-  gpu,        ///< graphics processors: products, one thread a row; atomic additions, one thread a cell
+  gpu,        ///< graphics processors: products, one thread per row; atomic additions, one thread per cell
 };
 
 /// All values of `Workload`.
@@ -69,7 +69,7 @@ struct Progress {
   double seconds = 0;    ///< since the call began
 };
 
-/// How a call runs. Only `time_limit` can change a result; all else leaves it the same, bit for bit.
+/// How a call runs. Only `time_limit` can change a result; the other members leave every bit the same.
 struct Run {
   /// Largest number of threads, ≥ 0; 0: as many as the caller's TBB arena has. The call runs in an arena of
   /// its own; 1 starts no thread. A limit set by tbb::global_control holds as well.
@@ -80,7 +80,7 @@ struct Run {
   std::function<bool(const Progress&)> progress = {};
 
   /// Seconds after which iterative methods return the best result so far, with `complete` = false. Methods
-  /// that do not iterate ignore it.
+  /// that do not iterate ignore the limit.
   double time_limit = std::numeric_limits<double>::infinity();
 };
 
@@ -88,7 +88,7 @@ struct Run {
 /// `{.seed = 7, .run = {.threads = 4}}`.
 struct OrderOptions {
   std::uint64_t seed = 0;  ///< seed of `scrambled`, of METIS and of start vectors
-  /// Of Fiedler vectors: ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖, > 0; 0.1 suffices for orders.
+  /// Tolerance of Fiedler vectors, > 0: ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖. 0.1 suffices for orders.
   double tolerance = 0.1;
   int max_iterations = 500;           ///< limit for the eigensolver on the whole graph, ≥ 1
   Workload workload = Workload::all;  ///< what `auto` optimises

@@ -35,7 +35,7 @@ struct Order {
   std::vector<double> vector = {};
   bool complete = true;  ///< false: `Run::time_limit` ended the method early
   double seconds = 0;    ///< wall-clock time of the call
-  /// Changes to a copy of the input: "12 loops dropped", "indices narrowed".
+  /// What was changed in a copy of the input ("12 loops dropped", "indices narrowed") or looks wrong.
   std::vector<std::string> notes = {};
 };
 
@@ -62,7 +62,8 @@ struct MeshMethods {
 /// @param graph    n vertices (see `GraphView`); only fiedler and registered methods use the weights
 /// @param method   name of a vertex method
 /// @param options  see `OrderOptions`
-/// @param points   n points for geometric methods (hilbert, morton); n or none for others, which ignore them
+/// @param points   n points for geometric methods (hilbert, morton); n or none for others, of which only
+///                 `auto` and registered methods use the points
 /// @throws InvalidArgument for an unknown method (the message lists the known ones), for a geometric method
 ///         without coordinates, for sizes that do not match, and for what `check` refuses
 /// @throws TooLarge for more than 2,147,483,647 vertices, or for more entries than METIS's integers can count
@@ -99,8 +100,8 @@ MESHORDER_API Order order_elements(const CellsView& cells, const Permutation& ve
                                    std::string_view method = "auto", const OrderOptions& options = {},
                                    const PointsView& points = {});
 
-/// Orders a list of edges by the larger place of their two ends, then by the smaller one, then by number:
-/// `lexmax` for edges.
+/// Orders edges by the larger of the new places of their two ends, then by the smaller place, then by edge
+/// number: `lexmax` for edges.
 ///
 /// A loop over the edges then reaches the vertices nearly in their new order, whichever method ordered them.
 /// Do not sort by the smaller end: springs then take up to 1.5 times as long in orders along curves.
@@ -110,20 +111,20 @@ MESHORDER_API Order order_elements(const CellsView& cells, const Permutation& ve
 ///                  pass `Permutation::identity(n)` as `vertices`
 /// @param vertices  order of the n vertices
 /// @param run       threads, progress
-/// @return permutation of the m edges. The function does not change `ends`: move them by this permutation,
-///         then renumber them by `vertices`
-/// @throws InvalidArgument for an odd number of ends, and ends out of range
+/// @return permutation of the m edges. The function does not change `ends`: move the edges by this
+///         permutation, then renumber their ends by `vertices`
+/// @throws InvalidArgument for an odd number of ends, and ends out of range; as `order_elements`
 /// @note O(m log m). As deterministic as `order_vertices`.
 MESHORDER_API Permutation order_edges(const IndexView& ends, const Permutation& vertices,
                                       const Run& run = {});
 
-/// Orders the vertices of a mesh by the graph that joins the vertices of each element, and then its cells.
+/// Orders the vertices of a mesh, by the graph that joins the vertices of each element, and then the cells.
 ///
 /// @param mesh     n vertices, m cells
 /// @param methods  names of the two methods
 /// @param options  see `OrderOptions`; `groups` has n entries or none, `cell_groups` m or none; the time
 ///                 limit and the progress are those of the whole call
-/// @throws as `order_vertices`, and InvalidArgument for faulty cells
+/// @throws as `order_vertices` and `vertex_graph`
 /// @note The graph costs O(Σ (vertices of an element)²) and about 60 bytes a tetrahedron.
 MESHORDER_API MeshOrder order_mesh(const MeshView& mesh, const MeshMethods& methods = {},
                                    const OrderOptions& options = {});
@@ -186,7 +187,7 @@ class MESHORDER_API Graph {
 /// @param vertex_count  n; vertices that no element uses have no neighbours
 /// @param run           threads, progress
 /// @throws InvalidArgument for faulty cells: sizes that do not match, a vertex out of range
-/// @throws TooLarge for more than 2,147,483,647 vertices or cells
+/// @throws TooLarge for more than 2,147,483,647 vertices or cells, and a graph beyond the memory limit
 /// @note O(Σ (vertices of an element)² · log degree). The same graph on any number of threads.
 [[nodiscard]] MESHORDER_API Graph vertex_graph(const CellsView& cells, std::size_t vertex_count,
                                                const Run& run = {});
@@ -221,13 +222,13 @@ class MESHORDER_API Graph {
 /// Checks that a graph is what the functions of this library accept: see `Check`. Loops, repeats and unsorted
 /// rows pass.
 ///
-/// @param graph  arrays of any content, of the sizes that the views have
+/// @param graph  a graph of any content, in arrays as long as the views
 /// @param level  what to check
 /// @throws InvalidArgument for the first fault; the message names the row, the entry and the fault
 /// @throws TooLarge for more than 2,147,483,647 vertices
-/// @note O(n + entries) time, on all threads; a slower pass over sorted rows follows only if the first test
-///       of symmetry fails. No memory for int64 offsets and int32 neighbours; for other types as
-///       `order_vertices`.
+/// @note O(n + entries) time, on all threads. No memory for int64 offsets and int32 neighbours; for other
+///       types as `order_vertices`. If the first test of symmetry fails, a slower second one compares the
+///       rows, or a sorted copy of them.
 MESHORDER_API void check(const GraphView& graph, Check level = Check::full);
 
 }  // namespace v0_3

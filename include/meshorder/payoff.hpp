@@ -22,7 +22,7 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// The hot loops of simulators whose times are predicted and measured.
+/// The hot loops of simulators; their times are predicted and measured.
 enum class Kernel : std::uint8_t {
   spmv,      ///< product of a sparse matrix, which has an entry for each edge, with a vector
   element,   ///< forces of the elements
@@ -32,8 +32,8 @@ enum class Kernel : std::uint8_t {
 
 /// How the kernels are written. The gain of an order depends on this.
 enum class KernelSet : std::uint8_t {
-  /// As in most programs: one loop, no prefetching, no blocking. One unknown for each vertex in the matrix,
-  /// linear elements, edges sorted by their smaller end.
+  /// As in most programs: one loop, no prefetching, no blocking. The matrix has one unknown for each vertex,
+  /// elements are linear, and edges are sorted by their smaller end.
   plain,
   /// As in the simulators of this project: elastic elements, 3×3 blocks in the matrix. The loops prefetch and
   /// handle eight elements or edges at a time. Their times are about equal in all good orders.
@@ -46,12 +46,12 @@ inline constexpr std::array kKernels{Kernel::spmv, Kernel::element, Kernel::asse
 /// Returns "spmv", "element", "assembly" or "springs". Valid for the life of the program.
 MESHORDER_API std::string_view to_string(Kernel kernel);
 
-/// Converts a set to its name, "plain" or "tuned", and back. `parse_kernels` throws InvalidArgument for other
-/// names.
+/// Converts a kernel set to its name, "plain" or "tuned", and back. `parse_kernels` throws InvalidArgument
+/// for other names.
 MESHORDER_API std::string_view to_string(KernelSet kernels);
 MESHORDER_API KernelSet parse_kernels(std::string_view name);
 
-/// Milliseconds that one run of each kernel takes when it is run again and again.
+/// Milliseconds of one run of each kernel, in a series of runs.
 using KernelMilliseconds = std::array<double, kKernels.size()>;
 
 /// Times of the kernels in one order.
@@ -68,7 +68,7 @@ struct OrderCosts {
 /// Tiles along each side of `Candidate::pattern`; fewer if there are fewer vertices.
 inline constexpr int kPatternSide = 64;
 
-/// An order of the mesh, and the times of the kernels in it.
+/// An order of the mesh, and the times of the kernels in that order.
 struct Candidate {
   MethodChoice vertices = {};
   MethodChoice elements = {};
@@ -89,7 +89,7 @@ struct KernelAdvice {
 /// The gain that reordering a mesh would bring.
 struct Advice {
   Candidate as_is = {};                    ///< the order that the mesh has
-  std::vector<Candidate> candidates = {};  ///< the first is the choice of `reorder` without options
+  std::vector<Candidate> candidates = {};  ///< those of `PayoffOptions::methods`, in that order
   std::array<KernelAdvice, kKernels.size()> kernels = {};
   /// Reason not to trust the measured times, a sentence: the machine was busy or throttled. Empty if they are
   /// reliable, or if nothing was measured.
@@ -97,13 +97,13 @@ struct Advice {
   /// The machine of the predicted times: "this machine, calibrated 2026-11-22", a machine's name, or
   /// "this machine's caches at the costs of zen3"; empty if nothing was predicted.
   std::string machine = {};
-  /// For each kernel, the share by which two timings of the same problem differ on that machine. Smaller
+  /// For each kernel, the share by which two timings of the same problem differ on `machine`. Smaller
   /// differences do not count. 0 if unknown.
   std::array<double, kKernels.size()> floor = {};
   int threads = 1;                          ///< threads that shared each run
   KernelSet kernel_set = KernelSet::plain;  ///< the kernels that were timed
-  /// Whether the file of the mesh holds a matrix or graph. Then spmv is the product with that matrix, the
-  /// times of the other kernels are 0, and one product counts in place of a time step.
+  /// Whether the input is a matrix or graph, or a mesh from a file of one. Then spmv is the product with that
+  /// matrix, the times of the other kernels are 0, and one product counts in place of a time step.
   bool is_matrix = false;
 };
 
@@ -119,8 +119,8 @@ struct PayoffOptions {
   std::vector<MeshMethods> methods = {};
   bool predict = true;  ///< gives the same times on every run
   /// The machine to predict for: one whose costs are part of the library ("zen3"), or "this": the stored
-  /// calibration of this machine or, if there is none, its caches with the costs of "zen3". Empty: the value
-  /// of the environment variable MESHORDER_MACHINE, or "this" if it is not set.
+  /// calibration of this machine or, if there is none, this machine's caches with the costs of "zen3". Empty:
+  /// the value of the environment variable MESHORDER_MACHINE, or "this" if that is not set.
   std::string machine = {};
   bool measure = false;                  ///< runs the kernels here
   KernelSet kernels = KernelSet::plain;  ///< only plain kernels can be predicted
@@ -137,30 +137,29 @@ struct PayoffOptions {
 ///
 /// @param mesh     n vertices with points, m cells with types, at least one of them a line, surface or volume
 /// @param options  see `PayoffOptions`
-/// @return the kernels' times in the present order and in every candidate, and the best candidate for each.
-///         Times count as equal if they differ by less than `Advice::floor`, or by less than 5 %. For times
-///         predicted by shipped costs the second limit is 10 %, for products 25 %
-/// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for unknown types and
-///         machines, if neither `predict` nor `measure` is true, for `predict` with tuned kernels, and for
-///         `predict` with `all_threads` if the machine's costs on that number of threads are not known, and
-///         for `Workload::gpu`
+/// @return the kernels' times in the present order and in every candidate, and the best candidate for each
+///         kernel. Times count as equal if they differ by less than `Advice::floor`, or by less than 5 %. For
+///         times predicted by shipped costs the second limit is 10 %, for products 25 %
+/// @throws as `order_mesh`; InvalidArgument also for a mesh without such cells, unknown types and machines, a
+///         negative budget, `Workload::gpu`, neither `predict` nor `measure`, `predict` with tuned kernels,
+///         and `predict` with `all_threads` if the machine's costs on that number of threads are not known
 /// @note Time: that of the orders; to predict, about a second for each candidate and million tetrahedra; to
 ///       measure, the budget. Each candidate holds a copy of points, cells and graph, about 0.8 KB a vertex
 ///       of a tetrahedral mesh, and 2.5 KB a vertex more while it is measured. Stages of progress: those of
 ///       `order_mesh`, "predict" and "measure".
 [[nodiscard]] MESHORDER_API Advice advise(const MeshView& mesh, const PayoffOptions& options = {});
 
-/// Returns the gain of other orders of a square matrix's rows and columns for its product with a vector, the
-/// only kernel (see `Advice::is_matrix`). The pattern need not be symmetric. Methods that need points
+/// Returns the gain of reordering a square matrix, rows and columns alike, for the only kernel: its product
+/// with a vector (see `Advice::is_matrix`). The pattern need not be symmetric. Methods that need points
 /// cannot order a matrix. Exceptions and cost as for a mesh; InvalidArgument for a matrix without entries off
 /// the diagonal and for tuned kernels; TooLarge for more than 2,147,483,647 entries.
 [[nodiscard]] MESHORDER_API Advice advise(const GraphView& matrix, const PayoffOptions& options = {});
 
-/// The same for a mesh from a reader; it is treated as a matrix if its file holds one.
+/// The same for a mesh from a reader; a mesh whose file holds a matrix or graph is treated as that matrix.
 [[nodiscard]] MESHORDER_API Advice advise(const Mesh& mesh, const PayoffOptions& options = {});
 
-/// Compares orders of a mesh or matrix: the present one, then `options.methods`. Parameters, exceptions and
-/// cost as of `advise`.
+/// Returns the present order of a mesh or matrix, then the candidates of `advise`. Parameters, exceptions and
+/// cost are those of `advise`.
 [[nodiscard]] MESHORDER_API std::vector<Candidate> compare(const MeshView& mesh,
                                                            const PayoffOptions& options = {});
 [[nodiscard]] MESHORDER_API std::vector<Candidate> compare(const GraphView& matrix,
@@ -193,8 +192,8 @@ struct CalibrationReport {
 /// build of the library.
 ///
 /// @param options  see `CalibrationOptions`
-/// @throws InvalidArgument for a time that is not above 0; Error with Code::io if it cannot be stored;
-///                         Stopped
+/// @throws InvalidArgument for a time that is not above 0; Error with Code::io if the result cannot be
+///                         stored; Stopped
 /// @note Runs for `options.seconds`, or longer on a slow machine, in about 1 GB of memory. Other work on the
 /// machine makes the result wrong. Stages of progress: "caches", "bandwidths", "lattices".
 MESHORDER_API CalibrationReport calibrate(const CalibrationOptions& options = {});

@@ -153,8 +153,8 @@ class MESHORDER_API Permutation {
   /// @param values   the same number of bytes for each entry of A, one after another; may be empty
   /// @param offsets  n + 1 offsets of B, written
   /// @param columns  as many columns of B as of A, written
-  /// @param moved    as many bytes as `values`, written; no output may overlap an input
-  /// @throws InvalidArgument if sizes do not match, A is faulty or an output overlaps an input
+  /// @param moved    as many bytes as `values`, written; no output may overlap another array
+  /// @throws InvalidArgument if sizes do not match, A is faulty or an output overlaps another array
   /// @throws TooLarge if an output type cannot hold its numbers
   /// @note O(n + entries · log row), on all threads. Memory: 8 (n + 1) bytes and a row for each thread. If
   ///       the offsets are not int64, the columns not int32 or the base not 0: up to 8 (n + 1) bytes and 4
@@ -162,8 +162,8 @@ class MESHORDER_API Permutation {
   void move_csr(const GraphView& matrix, std::span<const std::byte> values, IndexSpan offsets,
                 IndexSpan columns, std::span<std::byte> moved) const;
 
-  /// Returns where `move_csr` takes each entry from: entry k of B is entry map[k] of A, from 0. For matrices
-  /// whose values change while the pattern stays. Throws and costs as `move_csr`; 8 bytes an entry.
+  /// Returns the source of each entry of B (see `move_csr`): entry k of B is entry map[k] of A, from 0. For
+  /// matrices whose values change while the pattern stays. Throws and costs as `move_csr`; 8 bytes an entry.
   [[nodiscard]] std::vector<Offset> csr_entry_map(const GraphView& matrix) const;
 
   bool operator==(const Permutation&) const = default;

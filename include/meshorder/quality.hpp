@@ -21,12 +21,12 @@ struct Quality {
   /// Mean of log₂ span; weighs short spans more than mean_span, which long spans dominate.
   double mean_log2_span = 0;
   Index bandwidth = 0;  ///< the largest span: the half bandwidth of the matrix with this pattern
-  Offset profile = 0;   ///< Σ over rows of the distance from the row's first entry to the diagonal after it
+  Offset profile = 0;  ///< Σ over rows: diagonal − column of the first entry, if that is before the diagonal
   std::vector<Offset> histogram_log2 = {};  ///< entry k: the number of edges with span in [2ᵏ, 2ᵏ⁺¹)
   /// Share, 0 … 1, of jumps. In a product with the matrix, the vector is read by cache lines of 8 entries.
-  /// The first read of a line is a jump unless it comes soon after the first read of one of the three lines
-  /// before it. If vectors exceed the last cache, this share explains the times of plain products and
-  /// springs.
+  /// The first read of a line is a jump unless one of the three lines before it in memory was first read
+  /// within the last 32 first reads. If vectors exceed the last cache, this share explains the times of plain
+  /// products and springs.
   double jump_share = 0;
 
   bool operator==(const Quality&) const = default;
@@ -46,8 +46,8 @@ struct SparsityPattern {
 /// @param run       threads, progress
 /// @param symmetry  mirror: an asymmetric pattern counts as that of A + Aᵀ
 /// @throws InvalidArgument if `check` refuses the graph
-/// @note O(n + edges). The result does not depend on the number of threads. Cache lines, prefetching and the
-///       traversal of elements are not modelled; see payoff.hpp.
+/// @note O(n + edges). The result does not depend on the number of threads. Caches (except in `jump_share`),
+///       prefetching and the traversal of elements are not modelled; see payoff.hpp.
 MESHORDER_API Quality quality(const GraphView& graph, const Run& run = {},
                               Symmetry symmetry = Symmetry::require);
 
@@ -65,7 +65,7 @@ MESHORDER_API Quality quality(const GraphView& graph, const Permutation& order, 
 ///
 /// @param graph  n vertices
 /// @param order  n places
-/// @param width  of a bin, ≥ 1
+/// @param width  width of a bin, ≥ 1
 /// @param run    threads, progress
 /// @return entry k: the number of edges with span in [k · width, (k + 1) · width), up to the largest span
 /// @throws InvalidArgument as `quality`, and if width < 1
@@ -73,7 +73,7 @@ MESHORDER_API Quality quality(const GraphView& graph, const Permutation& order, 
 MESHORDER_API std::vector<Offset> span_histogram(const GraphView& graph, const Permutation& order,
                                                  Index width, const Run& run = {});
 
-/// Counts the entries of the matrix with the pattern of a graph, diagonal included, in square tiles.
+/// Counts the entries of a graph's matrix, diagonal included, in square tiles.
 ///
 /// @param graph     n vertices
 /// @param order     n places

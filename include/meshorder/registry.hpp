@@ -74,8 +74,8 @@ class [[nodiscard]] MESHORDER_API Registration {
   std::uint64_t id_ = 0;
 };
 
-/// Adds a vertex method; `order_vertices`, the comparison and the C interface then know it by its name.
-/// `auto` never takes it.
+/// Adds a vertex method, which `order_vertices`, `compare` and the C interface then find by its name. `auto`
+/// never chooses it.
 ///
 /// @param info    name and description
 /// @param method  must not be empty; its result is checked to have n places
@@ -95,8 +95,8 @@ MESHORDER_API Registration register_element_method(MethodInfo info, ElementMetho
 /// Loads a shared library and calls its `meshorder_plugin_v1` (see meshorder.h), which registers methods. The
 /// library is never unloaded.
 ///
-/// @throws Unavailable if it cannot be loaded or lacks that function, or if the platform has no shared
-///         libraries
+/// @throws Unavailable if the library cannot be loaded or lacks that function, or if the platform has no
+///         shared libraries
 /// @throws InvalidArgument if the function returns other than 0
 /// @warning Runs code of that library.
 MESHORDER_API void load_methods(const std::filesystem::path& shared_library);

@@ -14,10 +14,10 @@ inline namespace v0_3 {
 /// The geometric shape of a cell. Shape and number of vertices together are the type of a cell: a tetrahedron
 /// of 4 vertices is linear, one of 10 is quadratic. The last five shapes have any number of vertices.
 ///
-/// Corners come first, in VTK's order except for linear wedges: the first triangle of every wedge faces
-/// inward, as in Gmsh. In second-order cells the nodes of edges, faces and interior follow, in VTK's order.
-/// A polyhedron has the corners of its faces, each once, in any order. The faces themselves are not part of
-/// the cell; the metadata of the file's format keep them.
+/// Corners come first, in VTK's order, except in linear wedges. The first triangle of every wedge faces
+/// inward, as in Gmsh. In second-order cells the nodes of edges, faces and interior follow, in VTK's order. A
+/// polyhedron has the corners of its faces, each once, in any order. The faces themselves are not part of the
+/// cell; the metadata of the file's format keep them.
 enum class Shape : std::uint8_t {
   vertex,
   line,

@@ -26,7 +26,7 @@ inline namespace v0_3 {
 ///
 /// Brace initialisation works from any mix of integer types: `GraphView{row_start, column}`.
 struct GraphView {
-  /// n + 1 numbers that ascend, the first is `base`; empty for the graph without vertices.
+  /// n + 1 ascending numbers; the first is `base`. Empty for the graph without vertices.
   IndexView offsets = {};
   /// The neighbours: (offsets[n] − base) numbers, each from base to base + n − 1.
   IndexView neighbours = {};
@@ -43,7 +43,7 @@ using Point = std::array<double, 3>;
 /// A view of the caller's coordinates, float or double, in one to three dimensions and in any regular layout.
 ///
 /// Axis a of point p is at `data + p · point_stride + a · axis_stride` bytes: structures of arrays, arrays of
-/// structures and padded rows all fit. Lifetime as of `IndexView`.
+/// structures and padded rows all fit. Lifetime: see `IndexView`.
 class PointsView {
  public:
   /// No coordinates.
@@ -109,8 +109,8 @@ class PointsView {
   [[nodiscard]] Offset point_stride() const noexcept { return point_stride_; }
   [[nodiscard]] Offset axis_stride() const noexcept { return axis_stride_; }
 
-  /// Returns a coordinate of point `point` < size(); 0 for an axis from dimension() on. O(1). Misaligned
-  /// arrays are read correctly.
+  /// Returns a coordinate of point `point` < size(); 0 if `axis` ≥ dimension(). O(1). Misaligned arrays are
+  /// read correctly.
   [[nodiscard]] double operator()(std::size_t point, int axis) const noexcept {
     if (axis >= dimension_) return 0;
     const char* const at =
@@ -147,12 +147,12 @@ struct CellBlock {
   IndexView vertices = {};    ///< vertices_per_cell for each cell
 };
 
-/// A view of the cells of a mesh, in one of three layouts. Lifetime of the arrays as of `IndexView`; block
-/// descriptors and the view's own few bytes are copied.
+/// A view of the cells of a mesh, in one of three layouts. The view copies the block descriptors, not the
+/// arrays (lifetime: see `IndexView`).
 ///
 /// The arrays are not checked here: each function that takes the view throws InvalidArgument for sizes that
-/// do not match, vertices outside base … base + vertex_count − 1, and blocks with a number of vertices that
-/// no usual cell of their shape has, such as 5 for a tetrahedron.
+/// do not match, vertices outside base … base + vertex_count − 1, and blocks whose `vertices_per_cell` is
+/// unusual for their shape, such as 5 for tetrahedra.
 class CellsView {
  public:
   /// No cells.
@@ -174,7 +174,7 @@ class CellsView {
     return view;
   }
 
-  /// Blocks of cells of one type each, as in meshio, Gmsh and MFEM. Cells are numbered block after
+  /// Blocks of cells, each block of one type, as in meshio, Gmsh and MFEM. Cells are numbered block after
   /// block. Copies the descriptors, not the arrays. O(blocks).
   static CellsView blocks(std::span<const CellBlock> blocks, int base = 0) {
     CellsView view;
@@ -184,9 +184,9 @@ class CellsView {
   }
 
   /// Cells of unknown types in compressed form: cell c has `vertices[offsets[c] − base] …`. Every vertex
-  /// counts as a corner, all cells have the same dimension and facets are unknown.
+  /// counts as a corner, all cells count as of one dimension, and facets are unknown.
   ///
-  /// @param offsets   cells + 1 numbers that ascend, the first is `base`
+  /// @param offsets   cells + 1 ascending numbers; the first is `base`
   /// @param vertices  offsets[cells] − base vertex numbers
   /// @param base      number of the first vertex and first offset, 0 or 1
   static CellsView mixed(IndexView offsets MESHORDER_LIFETIMEBOUND,
@@ -198,7 +198,7 @@ class CellsView {
     return view;
   }
 
-  /// The same with VTK's type number of each cell; none if they are not known.
+  /// The same with VTK's type number of each cell; an empty span if the types are not known.
   static CellsView mixed(IndexView offsets MESHORDER_LIFETIMEBOUND,
                          IndexView vertices MESHORDER_LIFETIMEBOUND, std::span<const std::uint8_t> vtk_types,
                          int base = 0) {
@@ -207,7 +207,7 @@ class CellsView {
     return view;
   }
 
-  /// The same with the shape of each cell; none if they are not known.
+  /// The same with the shape of each cell; an empty span if the shapes are not known.
   static CellsView mixed(IndexView offsets MESHORDER_LIFETIMEBOUND,
                          IndexView vertices MESHORDER_LIFETIMEBOUND, std::span<const Shape> shapes,
                          int base = 0) {
@@ -228,8 +228,8 @@ class CellsView {
     return cells;
   }
 
-  /// Returns true for the compressed form: `offsets`, `vertices`, `vtk_types` and `shapes` describe it.
-  /// Otherwise `block_list` does.
+  /// Returns true if `offsets`, `vertices`, `vtk_types` and `shapes` describe the cells, in compressed form;
+  /// otherwise `block_list` does.
   [[nodiscard]] bool is_mixed() const noexcept { return !offsets_.empty(); }
   [[nodiscard]] std::span<const CellBlock> block_list() const& noexcept MESHORDER_LIFETIMEBOUND {
     return blocks_;
@@ -254,7 +254,7 @@ class CellsView {
 struct MeshView {
   PointsView points = {};  ///< one for each vertex, or none
   CellsView cells = {};
-  std::size_t vertex_count = 0;  ///< 0: the number of points; otherwise equal to it if there are points
+  std::size_t vertex_count = 0;  ///< 0: as many as points; else must equal the number of points, if any
 };
 
 }  // namespace v0_3

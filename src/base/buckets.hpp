@@ -22,7 +22,7 @@ struct StoredEntry {
   [[nodiscard]] const Entry& whole(Index /*first_row*/, Index /*first_key*/) const { return entry; }
 };
 
-/// Puts entries into buckets of adjacent keys; entries of a bucket keep their given order. This is the first
+/// Entries in buckets of adjacent keys, in their given order within a bucket. Filling buckets is the first
 /// step of sorting more entries than the caches hold; the second step sorts each bucket. Each thread fills
 /// its own buckets with a part of the entries: its writes then stay in its caches, whatever the order of the
 /// keys. The result is the same for any number of threads. O(entries + parts · buckets) time and memory.
@@ -32,8 +32,8 @@ class Buckets {
   /// @param rows         number of rows that the entries come from
   /// @param rows_of_part  rows that a thread takes at a time; they should have about 10⁵ entries
   /// @param keys         number of keys, which are 0 … keys − 1
-  /// @param entries_of   `entries_of(part, begin, end)` returns a function that calls its argument for each
-  ///                     entry of the part's rows; that function is called twice. Parts run on all threads
+  /// @param entries_of   `entries_of(part, begin, end)` returns a function, called twice, that calls its
+  ///                     argument for each entry of the part's rows. Parts run on all threads
   /// @param key          `key(entry)` returns the key of an entry
   template <class EntriesOf, class Key>
   Buckets(Index rows, Index rows_of_part, Index keys, const EntriesOf& entries_of, const Key& key)
@@ -67,7 +67,7 @@ class Buckets {
   /// Returns the smallest key that the bucket may have.
   [[nodiscard]] Index first_key(Index bucket) const { return bucket << log2_width_; }
 
-  /// Returns the place of the first entry of each key of the bucket among all sorted entries, and the end.
+  /// Returns where each key of the bucket begins among all sorted entries, and the end of the last key.
   template <class Key>
   [[nodiscard]] std::vector<Offset> key_starts(Index bucket, const Key& key) const {
     std::vector<Offset> starts(std::size_t(std::min(width(), keys_ - first_key(bucket))) + 1, 0);

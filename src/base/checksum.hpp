@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// A 64-bit hash similar to FNV-1a, with other values: it takes words instead of bytes and folds in the upper
-/// half of its state.
+/// A 64-bit hash that modifies FNV-1a: it takes words instead of bytes and folds in the upper half of its
+/// state.
 class Checksum {
  public:
   template <class Number>

@@ -29,8 +29,8 @@ std::map<std::string, std::string> facts_of_first_processor(std::istream& cpuinf
   return facts;
 }
 
-/// Returns the folder in an environment variable; empty if unset or relative, which the XDG standard calls
-/// invalid.
+/// Returns the folder in an environment variable; empty if the variable is unset or relative (the XDG
+/// standard calls relative paths invalid).
 fs::path folder_in(const char* variable) {
   const char* const value = std::getenv(variable);
   fs::path folder = value != nullptr ? value : "";

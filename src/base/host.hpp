@@ -7,15 +7,15 @@
 
 namespace meshorder {
 
-/// Returns the name of the first processor in Linux's /proc/cpuinfo. ARM processors have only numbers there:
-/// "aarch64 processor, implementer 0x41, part 0xd0c". If the file has neither name nor numbers:
-/// "`architecture` processor".
+/// Returns the name of the first processor in Linux's /proc/cpuinfo. For ARM processors, which have only
+/// numbers there: "aarch64 processor, implementer 0x41, part 0xd0c". If the file has neither name nor
+/// numbers: "`architecture` processor".
 std::string processor_name(std::istream& cpuinfo, const std::string& architecture);
 
 /// Returns `processor_name` of this machine.
 std::string processor_of_this_machine();
 
-/// The family of a processor, in the numbers of x86's CPUID; −1 on other processors.
+/// The family of an x86 processor, as CPUID numbers it; −1 on other processors.
 struct ProcessorFamily {
   std::string maker;  ///< "AuthenticAMD"; empty on other processors
   int family = -1;
@@ -31,9 +31,9 @@ ProcessorFamily family_of_this_machine();
 /// Returns whether the family is AMD's Zen 4, by the test in Linux (init_amd in arch/x86/kernel/cpu/amd.c).
 bool is_zen4(const ProcessorFamily& family);
 
-/// Returns the folder for files that can be remade: `$MESHORDER_CACHE`, `$XDG_CACHE_HOME/meshorder` or
-/// `~/.cache/meshorder`, the first whose variable is set; the last two variables do not count if relative.
-/// Empty if no variable is set. The folder need not exist.
+/// Returns the folder for files that can be remade: the first of `$MESHORDER_CACHE`,
+/// `$XDG_CACHE_HOME/meshorder` and `$HOME/.cache/meshorder` whose variable is set (the last two: to an
+/// absolute path). Empty if there is none. The folder need not exist.
 std::filesystem::path user_cache_folder();
 
 }  // namespace meshorder

@@ -36,7 +36,7 @@ int opened_at(int folder, const char* name, int flags) {
   return result;
 }
 
-/// Opens an absolute path in which no component is a link. Returns −1 and sets errno on failure.
+/// Opens an absolute path; fails if a component is a link. Returns −1 and sets errno on failure.
 int opened_without_links(const fs::path& path) {
   int folder = opened_at(AT_FDCWD, "/", kPassing);
   const fs::path below = path.relative_path();
@@ -62,8 +62,8 @@ bool is_below(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-/// Returns why a file of this mode cannot be read, such as "is a folder"; nullptr for a file or an allowed
-/// pipe.
+/// Returns why a file of this mode cannot be read, such as "is a folder"; nullptr for a regular file or an
+/// allowed pipe.
 const char* kind_of_unreadable(mode_t mode, bool may_be_pipe) {
   if (S_ISDIR(mode)) return "is a folder";
   if (S_ISSOCK(mode)) return "is a socket";
@@ -129,7 +129,7 @@ void InputFile::fail(int error) const {
                    "check the path and the disk");
 }
 
-/// Checks the type of the opened file again, since others may have replaced it meanwhile, and takes its size.
+/// Checks the type of the opened file, which may have been replaced meanwhile, and stores its size.
 void InputFile::require_readable() {
   struct stat status {};
   if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) fail(errno);
@@ -142,8 +142,8 @@ void InputFile::require_readable() {
   if (S_ISFIFO(status.st_mode)) wait_for_writer();
 }
 
-/// Waits up to three seconds for a writer of a pipe. A byte, an end or EAGAIN shows that it has had a writer.
-/// Later reads block.
+/// Waits up to three seconds for a writer of a pipe. A byte, a hang-up or EAGAIN shows that the pipe has had
+/// one. Later reads block.
 void InputFile::wait_for_writer() {
   constexpr int kTurns = 300;
   constexpr int kMilliseconds = 10;
@@ -165,7 +165,7 @@ void InputFile::wait_for_writer() {
 
 namespace {
 
-/// Calls `read` until `into` is full or no byte is left. Returns the bytes read; −1 and errno on errors.
+/// Calls `read` until `into` is full or no byte is left. Returns the number of bytes read, or −1 with errno.
 template <class Read>
 ssize_t transferred(std::span<char> into, const Read& read) {
   std::size_t done = 0;

@@ -19,15 +19,15 @@ std::optional<std::filesystem::path> real_path_below(const std::filesystem::path
 /// descriptions of the machine (/proc, /sys).
 ///
 /// Opening does not wait for long: a pipe that the user named needs a writer within three seconds; other
-/// pipes are refused like devices, sockets and folders. Throws InputError for these, for a file that is
-/// missing or may not be read, and for failures of the disk.
+/// pipes are refused like devices, sockets and folders. Throws InputError for what is refused, for a file
+/// that is missing or may not be read, and for failures of the disk.
 class InputFile {
  public:
   /// Opens the path that the user gave. Links are followed; a pipe is read to its end.
   explicit InputFile(const std::filesystem::path& path);
-  /// Opens a file whose name comes from a file, a folder or another name. It must lie below one of the
-  /// folders (see `real_path_below`). The links of the path are resolved first. Its components are then
-  /// opened one by one; a link that another process puts there meanwhile is not followed.
+  /// Opens a file whose name comes from a file, a folder or another name. The file must lie below one of the
+  /// folders (see `real_path_below`). The path's links are resolved first; its components are then opened one
+  /// by one, without following a link that another process puts there meanwhile.
   InputFile(const std::filesystem::path& path, std::span<const std::filesystem::path> folders);
   ~InputFile();
   InputFile(InputFile&& other) noexcept;
@@ -59,7 +59,7 @@ class InputFile {
   std::filesystem::path path_;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;
-  std::optional<char> ahead_;  ///< the first byte of a pipe
+  std::optional<char> ahead_;  ///< the byte of a pipe that `wait_for_writer` read
   bool may_be_pipe_ = false;
 };
 

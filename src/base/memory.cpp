@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process
 MemoryLimit given_limit;
 
-/// Returns the least limit of a control group and of the groups that contain it; `root` has their folders.
+/// Returns the least memory limit of a control group and the groups around it; `root` has their folders.
 std::uint64_t limit_of_group(const fs::path& root, fs::path group, const char* file) {
   std::uint64_t least = UINT64_MAX;
   while (true) {
@@ -40,7 +40,7 @@ std::uint64_t limit_of_group(const fs::path& root, fs::path group, const char* f
   }
 }
 
-/// Returns the least limit of the control groups that this process is in, of version 1 or 2.
+/// Returns the least memory limit of the control groups, version 1 or 2, of this process.
 std::uint64_t limit_of_groups() {
   constexpr const char* kRoot = "/sys/fs/cgroup";
   std::uint64_t least = UINT64_MAX;
@@ -76,7 +76,7 @@ std::uint64_t find_usable_memory() {
 #if defined(__linux__)
 constexpr std::size_t kLargePage = std::size_t{2} << 20;
 
-/// The pages that lie entirely in a block; the pages at its ends may also hold other data.
+/// The pages that lie entirely in a block of memory: pages at its ends may also hold other data.
 struct Pages {
   char* begin;
   std::size_t bytes;
@@ -144,7 +144,7 @@ void ask_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::si
 void clear_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__)
   constexpr std::size_t kAtOnce = 8 * kLargePage;
-  // with one thread, clearing each page when it is filled is faster: the page is then in the cache
+  // with one thread, clearing each page just before filling it is faster: the page is then in the cache
   if (bytes < 2 * kAtOnce || thread_count() < 2) return;
   const Pages pages(memory, bytes);
   for_each_range(static_cast<Offset>(pages.bytes), Offset{kAtOnce}, [&](Offset begin, Offset end) {

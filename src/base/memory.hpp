@@ -13,8 +13,8 @@
 
 namespace meshorder {
 
-/// Returns the bytes of memory that this process may use: the least of the machine's memory, the limit of its
-/// address space and the limits of its control groups. Found once.
+/// Returns the bytes of memory that this process may use: the least of the machine's memory and the limits of
+/// the process's address space and control groups. Computed once.
 std::uint64_t usable_memory();
 
 /// A limit on the memory of work whose size depends on the input.
@@ -34,17 +34,17 @@ constexpr std::uint64_t bytes_for(std::uint64_t count, std::uint64_t bytes_each)
   return bytes_each != 0 && count > UINT64_MAX / bytes_each ? UINT64_MAX : count * bytes_each;
 }
 
-/// A unit of sizes in text, with its letter.
+/// A unit of sizes in text, such as G in "4G".
 struct SizeUnit {
   char letter;
   int bits;  ///< the unit is 2^bits bytes
 };
 inline constexpr std::array kSizeUnits{SizeUnit{'G', 30}, SizeUnit{'M', 20}, SizeUnit{'K', 10}};
 
-/// Returns the bytes of "48K", "32M", "4g" or "12"; nothing for other texts and for 2⁶³ bytes or more.
+/// Returns the bytes that "48K", "32M", "4g" or "12" means; nothing for other texts and 2⁶³ bytes or more.
 std::optional<std::uint64_t> parse_size(std::string_view text);
 
-/// Returns "64 GiB", "1.5 MiB" or "555 bytes".
+/// Returns a size as text, such as "64 GiB", "1.5 MiB" or "555 bytes".
 std::string size_text(std::uint64_t bytes);
 
 /// Asks the system for large pages under memory that is about to be filled, as NumPy does for its arrays: one
@@ -53,12 +53,12 @@ std::string size_text(std::uint64_t bytes);
 void ask_for_large_pages(void* memory, std::size_t bytes) noexcept;
 
 /// Clears the pages of memory that is about to be filled, on all threads; otherwise one thread would clear
-/// them when it first touches them. Calls `poll`. A hint, without effect on blocks below 32 MiB, with one
-/// thread, and on systems other than Linux.
+/// each page when it first touches the page. Calls `poll`. A hint, without effect on blocks below 32 MiB,
+/// with one thread, and on systems other than Linux.
 void clear_pages(void* memory, std::size_t bytes);
 
-/// Like `container.reserve(size)`, and asks for large pages if it allocates. It then reserves at least twice
-/// the container's size, so that growing in many steps takes linear time.
+/// Like `container.reserve(size)`, but asks for large pages. An allocation reserves at least twice the
+/// container's size, so that growing in many steps takes linear time.
 template <class Container>
 void reserve_large(Container& container, std::size_t size) {
   if (size <= container.capacity()) return;

@@ -24,14 +24,15 @@ namespace meshorder {
 constexpr Index chunk_count(Index n, Index size) { return static_cast<Index>((Offset{n} + size - 1) / size); }
 
 /// How threads share the turns (iterations) of a loop. balanced: a thread without work takes turns from
-/// another. repeated: a thread takes the same turns as last time if possible; its caches may hold their data.
+/// another. repeated: a thread takes the same turns as last time if possible: their data may still be in its
+/// caches.
 enum class Sharing { balanced, repeated };
 
 /// Calls `work(begin, end)` for ranges that make up 0 … n−1, on all threads. The ranges vary from call to
 /// call.
 ///
-/// If TBB cancels an outer loop, it also cancels loops within the turns of that loop; these then return as if
-/// complete. This function throws Stopped instead, so that nothing uses incomplete results.
+/// If TBB cancels an outer loop, it also cancels loops within the turns of that loop; TBB's loops then return
+/// as if complete. This function throws Stopped instead, so that nothing uses incomplete results.
 ///
 /// @throws what `work` throws; Stopped within a loop that another thread has cancelled
 void share_turns(Offset n, Sharing sharing, const std::function<void(Offset begin, Offset end)>& work);
@@ -105,7 +106,7 @@ void for_each_part(Index parts, Work work) {
 }
 
 /// Calls `work(begin, end)` for the ranges of `size` that make up 0 … n−1, on all threads. The ranges do not
-/// depend on the number of threads. As for_each_chunk, for more than 2³¹ entries.
+/// depend on the number of threads. Like for_each_chunk, but n may exceed 2³¹.
 template <class Work>
 void for_each_range(Offset n, Offset size, const Work& work) {
   if (n <= size) {
@@ -116,7 +117,7 @@ void for_each_range(Offset n, Offset size, const Work& work) {
                 [&](Offset range) { work(range * size, std::min(n, (range + 1) * size)); });
 }
 
-/// Returns whether `holds(begin, end)` is true for all parts of 0 … n−1. On all threads.
+/// Returns whether `holds(begin, end)` is true for all of the ranges that make up 0 … n−1. On all threads.
 template <class Holds>
 bool holds_for_all(Offset n, const Holds& holds) {
   constexpr Offset kAtOnce = 65536;
@@ -149,7 +150,7 @@ auto in_arena(const Run& run, const Work& work) {
 /// Runs the body of a public function with the threads, progress function and time limit of `run`. Returns
 /// what `work()` returns.
 ///
-/// @throws InvalidArgument for a negative number of threads or time limit, Stopped, and what `work` throws
+/// @throws InvalidArgument for negative threads, a negative or NaN time limit; Stopped; what `work` throws
 template <class Work>
 auto in_call(const Run& run, const Work& work) {
   const RunScope scope(run);

@@ -7,7 +7,7 @@
 
 namespace meshorder {
 
-/// Returns point `i` of a view, 0 along axes that it does not have.
+/// Returns point `i` of a view, with 0 along axes that the view does not have.
 inline Point point_at(const PointsView& points, Index i) {
   const auto at = static_cast<std::size_t>(i);
   return {points(at, 0), points(at, 1), points(at, 2)};
@@ -15,7 +15,7 @@ inline Point point_at(const PointsView& points, Index i) {
 
 inline Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 inline Point scaled(double factor, const Point& a) { return {factor * a[0], factor * a[1], factor * a[2]}; }
-/// a + factor · b
+/// Returns a + factor · b.
 inline Point plus_scaled(const Point& a, double factor, const Point& b) {
   return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]};
 }

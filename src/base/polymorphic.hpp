@@ -3,7 +3,7 @@
 
 namespace meshorder {
 
-/// Base of abstract classes: a virtual destructor, neither copied nor moved.
+/// Base of abstract classes; has a virtual destructor and cannot be copied or moved.
 class Polymorphic {
  public:
   Polymorphic(const Polymorphic&) = delete;

@@ -14,7 +14,7 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
 
-  /// Uniform in 0 … bound−1, bound > 0.
+  /// Returns a number that is uniform in 0 … bound−1, bound > 0.
   std::uint64_t below(std::uint64_t bound) {
     const std::uint64_t unbiased = Engine::max() - Engine::max() % bound;
     std::uint64_t value = engine_();
@@ -22,7 +22,7 @@ class Random {
     return value % bound;
   }
 
-  /// Uniform in [0, 1).
+  /// Returns a number that is uniform in [0, 1).
   double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
 
  private:

@@ -17,8 +17,8 @@ constexpr auto kBetweenReports = std::chrono::milliseconds(50);
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): the state of each thread
 thread_local RunScope* innermost = nullptr;
 
-/// Active while the user's progress function runs: library calls that this function makes are not part of the
-/// watched call and do not call the function again.
+/// Leaves the current call while the user's progress function runs: library calls that this function makes
+/// are not part of that call and do not call the function again.
 class OutsideOfCalls {
  public:
   OutsideOfCalls() : scope_(std::exchange(innermost, nullptr)) {}
@@ -71,7 +71,7 @@ void poll() {
 TimeLimit::TimeLimit() {
   if (innermost == nullptr || std::isinf(innermost->run_.time_limit)) return;
   limited_ = true;
-  // a longer limit could overflow the clock and is as good as none
+  // a longer limit could overflow the clock; 30 years are as good as no limit
   constexpr double kLongest = 1e9;
   const std::chrono::duration<double> limit(std::min(innermost->run_.time_limit, kLongest));
   end_ = innermost->start_ + std::chrono::duration_cast<std::chrono::steady_clock::duration>(limit);

@@ -8,13 +8,13 @@
 
 namespace meshorder {
 
-/// The call into the library that the current thread is in. Reports its progress and ends it if the caller's
-/// progress function asks for that.
+/// The library call that the current thread is in. Reports the call's progress, and ends the call if the
+/// caller's progress function asks for that.
 ///
 /// The scope belongs to the thread that made the call. On other threads `poll` only checks whether their loop
 /// is cancelled, so the loops of base/parallel.hpp call `poll` in every turn: the calling thread takes turns
-/// too, and an exception there cancels the loop on all threads. A call within a call (a user's own method)
-/// belongs to the outer call unless its own run has a progress function or a time limit.
+/// too, and an exception there cancels the loop on all threads. A call within a call (by a user's own method)
+/// belongs to the outer call unless the `Run` of the inner call has a progress function or a time limit.
 class RunScope {
  public:
   explicit RunScope(const Run& run);
@@ -40,13 +40,13 @@ class RunScope {
 
 /// Reports the present stage of the calling thread's call, and the fraction of the call that is done: 0 … 1,
 /// or −1 if unknown. A fraction below the last one is replaced by the last one. Calls the user's progress
-/// function if 50 ms have passed since it was last called.
+/// function if its last call was 50 ms ago or more.
 ///
 /// @throws Stopped if the progress function returns false, and the exceptions of that function
 void report(std::string_view stage, double fraction = -1);
 
-/// Calls the user's progress function if 50 ms have passed since it was last called. Costs a nanosecond if
-/// there is no such function, otherwise a reading of the clock: call it every 10 µs … 10 ms of work.
+/// Calls the user's progress function if its last call was 50 ms ago or more. Costs a nanosecond if there is
+/// no such function and no time limit, else a reading of the clock: call `poll` every 10 µs … 10 ms of work.
 ///
 /// @throws as `report`; Stopped on a helping thread whose loop is cancelled
 void poll();
@@ -57,10 +57,11 @@ void poll_in_loop(Turn turn) {
   if (turn % 1024 == 0) poll();
 }
 
-/// The moment at which the time limit of the calling thread's call ends. Copies may be used on any thread.
+/// The moment at which the calling thread's library call exceeds its time limit. Copies may be used on any
+/// thread.
 class TimeLimit {
  public:
-  /// The limit of the call that the current thread is in; none outside calls.
+  /// Takes the limit of the current thread's library call; no limit outside calls.
   TimeLimit();
   [[nodiscard]] bool is_over() const { return limited_ && std::chrono::steady_clock::now() >= end_; }
 

@@ -22,7 +22,7 @@ std::string upper_case(std::string_view text) {
 
 namespace {
 
-/// The character at the front of a text.
+/// A character decoded from a text.
 struct Utf8Character {
   std::uint32_t code = 0;  ///< the byte itself if it is not valid UTF-8
   std::size_t bytes = 1;
@@ -56,7 +56,7 @@ bool turns_direction(std::uint32_t code) {
          (code >= 0x2066 && code <= 0x2069);
 }
 
-/// Appends "\\u202e" for a character below 0x10000, "\\xff" for a byte that is not valid UTF-8.
+/// Appends "\u202e" for a character below 0x10000, "\xff" for a byte that is not valid UTF-8.
 void append_escape(const Utf8Character& character, std::string& text) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   text += character.is_valid ? "\\u" : "\\x";
@@ -81,7 +81,7 @@ std::string with_escapes(std::string_view text, IsPlain is_plain) {
   return result;
 }
 
-/// Returns the word in lower case without leading dashes.
+/// Returns the word in lower case, without leading dashes.
 std::string bare(std::string_view word) {
   return lower_case(word.substr(std::min(word.find_first_not_of('-'), word.size())));
 }

@@ -17,7 +17,7 @@
 
 namespace meshorder {
 
-/// Returns "; did you mean 'order'?" if one of the names is spelt or begins almost like `word`; else "".
+/// Returns "; did you mean 'order'?" if a name is spelt or begins nearly like `word`; else "".
 std::string suggestion(const std::string& word, const std::vector<std::string>& names);
 
 /// Returns "unknown workload 'spring'; did you mean 'springs'?", or "unknown workload 'a'; known: …" if no
@@ -53,8 +53,8 @@ inline std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Removes the next word from the front of `line` and returns it without the separators around it; empty if
-/// none is left.
+/// Removes the next word from the front of `line` and returns the word, without separators; empty if no word
+/// is left.
 inline std::string_view next_word(std::string_view& line, std::string_view separators = " \t") {
   // words and separators are short: a loop is faster than the functions of string_view, which call memchr
   const auto separates = [&](char c) {
@@ -91,8 +91,8 @@ bool is_utf8(std::string_view text);
 /// Returns the longest prefix of `text` of at most `most` bytes that does not end within a UTF-8 character.
 std::string_view utf8_prefix(std::string_view text, std::size_t most);
 
-/// Returns `text` with escapes, like those of `visible`, for characters that XML cannot hold: control
-/// characters other than tab and line ends, U+FFFE, U+FFFF, and bytes that are not UTF-8. O(size).
+/// Returns `text` with escapes, like those of `visible`, for characters that XML cannot hold: characters
+/// below U+0020 other than tab and line ends, U+FFFE, U+FFFF, and bytes that are not UTF-8. O(size).
 std::string xml_text(std::string_view text);
 
 /// Returns `xml_text(text)` escaped for an XML attribute between double quotes. O(size).
@@ -114,7 +114,7 @@ concept NamedEnum = std::is_enum_v<Enum> && requires {
   EnumNames<Enum>::names.size();
 };
 
-/// Returns the name of `value`, an empty text if it has none.
+/// Returns the name of `value`; an empty text if `value` has none.
 template <NamedEnum Enum>
 constexpr std::string_view to_string(Enum value) {
   for (const auto& [candidate, name] : EnumNames<Enum>::names) {

@@ -10,7 +10,7 @@
 namespace meshorder::c {
 namespace {
 
-/// A larger `struct_size` is treated as a field that the caller forgot to set.
+/// The largest `struct_size` that is accepted; a larger value is probably an unset field.
 constexpr std::size_t kLargestStruct = 4096;
 
 bool is_integer(mo_type type) { return type >= MO_INT32 && type <= MO_UINT64; }
@@ -35,7 +35,7 @@ void check_alignment(const void* data, mo_type type, const char* name) {
                  ": copy the array to an aligned one");
 }
 
-/// Returns whether the array has entries. Throws if its size is negative, or its data null or unaligned.
+/// Returns whether an array has entries. Throws if the size is negative, or the data null or misaligned.
 bool is_given(const mo_in* array, const char* name) {
   if (array == nullptr || array->size == 0) return false;
   if (array->size < 0) fail(name, "the size is " + std::to_string(array->size) + ", must not be negative");
@@ -63,7 +63,7 @@ void write_as(std::span<const Index> numbers, Offset largest, int base, void* da
                  [base](Index number) { return static_cast<T>(Offset{number} + base); });
 }
 
-/// Copies all fields of options but `struct_size`.
+/// Copies the fields of options, except `struct_size`, that lie within the first `size` bytes.
 void copy_options(const mo_options& from, mo_options& to, std::size_t size) {
   copy_fields(from, to, size, &mo_options::method, &mo_options::element_method, &mo_options::workload,
               &mo_options::seed, &mo_options::tolerance, &mo_options::time_limit, &mo_options::threads,
@@ -252,7 +252,7 @@ using namespace meshorder;
 
 void mo_options_init(mo_options* options, size_t struct_size) {
   if (options == nullptr || struct_size < sizeof(std::size_t)) return;
-  // fields that a newer header adds are set to 0
+  // fields that a newer header adds become 0
   if (struct_size <= c::kLargestStruct) std::memset(static_cast<void*>(options), 0, struct_size);
   c::copy_options(c::default_options(), *options, struct_size);
   options->struct_size = struct_size;

@@ -16,8 +16,8 @@
 #include <string_view>
 #include <vector>
 
-// Arrays and structures of callers in C. All functions throw InvalidArgument, with the name of the argument,
-// for arguments that they do not accept.
+// Converts arrays and structures of callers in C. The functions throw InvalidArgument, with the name of the
+// argument, for arguments that they do not accept.
 
 namespace meshorder::c {
 
@@ -41,13 +41,13 @@ RealView reals(const mo_in* array, const char* name);
 PointsView points_of(const mo_in* array, int dimension);
 /// Returns offsets; throws if there are none.
 IndexView offsets_of(const mo_in* array, const char* name);
-/// Returns the VTK cell types, each in a byte; throws for a number that does not fit.
+/// Returns VTK's cell types; throws for a number that does not fit a byte.
 std::vector<std::uint8_t> types_of(const mo_in* array);
 GraphView graph_of(const mo_in* offsets, const mo_in* neighbours, const mo_in* weights, int base);
 
 // Output arrays.
 
-/// Throws unless the array is null (not wanted), or of integers with room for exactly `count` numbers.
+/// Throws unless the array is null (not wanted), or has an integer type and exactly `count` numbers.
 void check_integers(const mo_out* array, std::size_t count, const char* name);
 /// The same for real numbers.
 void check_reals(const mo_out* array, std::size_t count, const char* name);
@@ -70,7 +70,7 @@ void write(std::span<const double> values, const mo_out* array);
 
 void check_struct_size(std::size_t size, const char* name);
 
-/// Copies the given fields if they are entirely within the first `size` bytes of the structure.
+/// Copies each of the given fields that lies entirely within the first `size` bytes of the structure.
 template <class Struct, class... Fields>
 void copy_fields(const Struct& from, Struct& to, std::size_t size, Fields Struct::*... fields) {
   const auto copy = [&](auto field) {
@@ -84,7 +84,7 @@ void copy_fields(const Struct& from, Struct& to, std::size_t size, Fields Struct
 
 // Options.
 
-/// Returns the caller's options, with defaults for the fields that a caller of an older header lacks.
+/// Returns the caller's options, with defaults for the fields that the caller's older header lacks.
 mo_options complete_options(const mo_options* given);
 int base_of(std::int32_t base);
 OrderOptions order_options(const mo_options& given);

@@ -34,7 +34,7 @@
 namespace meshorder::c {
 namespace {
 
-/// Throws unless there are no points, or one for each of the `n` vertices of a graph.
+/// Throws if there are points, but not one for each of the `n` vertices of a graph.
 void check_points(const PointsView& points, std::size_t n) {
   if (points.empty() || points.size() == n) return;
   fail("points", "there are " + std::to_string(points.size()) + ", but the offsets are those of " +
@@ -61,7 +61,7 @@ void check_result(const mo_result* result) {
   if (result != nullptr) check_struct_size(result->struct_size, "result");
 }
 
-/// Writes as much of a report as the caller's structure has room for.
+/// Writes the fields of a report that the caller's structure has.
 void write_report(const mo_result& report, mo_result* result) {
   if (result == nullptr) return;
   copy_fields(report, *result, result->struct_size, &mo_result::complete, &mo_result::components,
@@ -100,7 +100,7 @@ void order_graph(const GraphView& graph, const PointsView& points, const mo_opti
   write_report(report_of(order), result);
 }
 
-/// Returns the map as a permutation; throws for an entry out of range.
+/// Returns the map as a permutation; throws if it is not a bijection or has too many entries.
 Permutation permutation_of(const IndexView& new_to_old, int base) {
   const auto n = static_cast<std::int64_t>(new_to_old.size());
   if (n > std::numeric_limits<Index>::max()) {
@@ -124,14 +124,14 @@ std::int64_t from_zero_on(std::int64_t number, int base) {
   return number == std::numeric_limits<std::int64_t>::min() ? number : number - base;
 }
 
-/// Returns the previous places, numbered from 0; -1 for new vertices.
+/// Returns the previous places, counted from 0; -1 for new vertices.
 std::vector<std::int64_t> places_before(const IndexView& previous, int base) {
   std::vector<std::int64_t> places(previous.size());
   for (std::size_t v = 0; v < places.size(); ++v) places[v] = from_zero_on(previous[v], base);
   return places;
 }
 
-/// Returns a copy of a name that lives as long as the process.
+/// Returns a copy of a name; the copy lives as long as the process.
 const char* kept(std::string name) {
   // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): never destroyed
   static auto* const mutex = new std::mutex;

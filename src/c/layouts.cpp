@@ -11,7 +11,7 @@
 namespace meshorder::c {
 namespace {
 
-// The structures that callers get, each with the arrays that it points to.
+// The structures that callers get, each with the arrays to which the structure points.
 
 struct OwnedPatches : mo_patches {
   Patches arrays;
@@ -23,7 +23,7 @@ struct OwnedColours : mo_colours {
   Colours arrays;
 };
 
-/// Cells of a caller and the options for them.
+/// A caller's cells, and the options of the call.
 struct GivenCells {
   GivenCells(const mo_in* offsets, const mo_in* vertices, const mo_in* vtk_types, std::int64_t n,
              const mo_options* options)
@@ -46,7 +46,7 @@ struct GivenCells {
   Run run;
 };
 
-/// Adds the base to numbers that count from 0.
+/// Adds the base, 0 or 1, to numbers that count from 0.
 template <class T>
 void count_from(int base, std::vector<T>& numbers) {
   if (base == 0) return;
@@ -74,7 +74,7 @@ std::size_t cache_of(std::int64_t bytes) {
   return bytes == 0 ? kGpuCacheBytes : static_cast<std::size_t>(bytes);
 }
 
-/// Writes as much of the counts as the caller's structure has room for.
+/// Writes the counts that the caller's structure has.
 void write_counts(const GpuCost& cost, mo_gpu_counts* counts) {
   mo_gpu_counts all{};
   all.requests = cost.requests;

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// The C interface for MPI. It copies the caller's arrays, checks them on all ranks, and turns exceptions into
+// The C interface for MPI. Copies the caller's arrays, checks them on all ranks, and turns exceptions into
 // statuses.
 #include "base/status.hpp"
 #include "distributed/comm/communicator.hpp"
@@ -28,7 +28,7 @@ using distributed::GlobalIndex;
 using distributed::Layout;
 using distributed::OwnedMesh;
 
-/// The largest number of vertices that a rank may have; sums over ranks then do not overflow.
+/// The largest number of vertices that a rank may own, so that sums over ranks do not overflow.
 constexpr std::int64_t kMostVertices = std::int64_t{1} << 40;
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): the error of each thread
@@ -65,7 +65,7 @@ struct NamedOption {
   std::string value;
 };
 
-/// Returns the options on which the order depends.
+/// Returns the options on which the order depends, which all ranks must share.
 std::array<NamedOption, 6> in_words(const DistributedOptions& options) {
   return {
       {{"method", options.vertices},
@@ -76,8 +76,7 @@ std::array<NamedOption, 6> in_words(const DistributedOptions& options) {
        {"parts", std::to_string(options.parts)}}};
 }
 
-/// Throws on all ranks if an option is not the same on all of them; otherwise the ranks could wait for each
-/// other.
+/// Throws on all ranks if an option differs between ranks; otherwise the ranks could wait for each other.
 void check_same_options(const Communicator& communicator, const DistributedOptions& options) {
   const std::array<NamedOption, 6> own = in_words(options);
   std::vector<std::string> values(own.size());
@@ -115,7 +114,7 @@ DistributedOptions options_of(const Communicator& communicator, const mo_mpi_opt
   return options;
 }
 
-/// Copies the arrays of a rank to `mesh` and checks them; `mesh.vertices` must be set.
+/// Copies a rank's arrays to `mesh` and checks the arrays; `mesh.vertices` must be set.
 void copy_arrays(const mo_mpi_mesh& given, OwnedMesh& mesh) {
   const GlobalIndex n = mesh.vertices.size();
   require(given.cell_count >= 0, "cell_count: " + std::to_string(given.cell_count));
@@ -174,8 +173,8 @@ OwnedMesh mesh_of(const Communicator& communicator, const mo_mpi_mesh* given) {
   return mesh;
 }
 
-/// Writes numbers to the caller's array. If `wanted` is given, the array must not be null; `wanted` is the
-/// name of the array in the message.
+/// Writes numbers to the caller's array, unless it is null. If `wanted`, the array's name, is given: throws
+/// on all ranks if a rank has numbers but a null array.
 void write(const Communicator& communicator, const std::vector<GlobalIndex>& numbers, std::int64_t* to,
            const char* wanted = nullptr) {
   communicator.together([&] {

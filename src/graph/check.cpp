@@ -11,8 +11,8 @@ namespace meshorder {
 inline namespace v0_3 {
 namespace {
 
-/// Throws if a graph is asymmetric after repeats and loops are removed; its entries must be in range. The
-/// hash is nonzero also if only repeats are asymmetric, so this function compares the clean rows.
+/// Throws if a graph, whose entries must be in range, is asymmetric without its repeats and loops. Compares
+/// the clean rows, because asymmetric repeats alone also make the hash nonzero.
 void refuse_asymmetry_of(const GraphView& view, const GraphArrays& graph, const GraphFindings& findings) {
   if (findings.asymmetry == 0) return;
   if (findings.is_clean()) {

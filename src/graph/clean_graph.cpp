@@ -15,8 +15,8 @@
 namespace meshorder {
 namespace {
 
-/// Sorts row v, drops its loops and merges its repeats. Returns how many entries remain; they begin where the
-/// row began.
+/// Sorts row v, drops its loops and merges its repeats. Returns the number of entries that remain, at the
+/// front of the row.
 Offset clean_row(OwnedGraph& rows, Index v, std::vector<std::pair<Index, double>>& buffer) {
   const Offset begin = rows.offsets[v];
   const Offset end = rows.offsets[v + 1];
@@ -100,7 +100,7 @@ OwnedGraph without_loops(const GraphArrays& graph) {
   return copy;
 }
 
-/// Lets `arrays` own the clean copy and refer to it.
+/// Moves the clean copy into `arrays`, which then refer to it.
 void adopt(GraphArrays& arrays, OwnedGraph clean) {
   arrays.own_offsets = std::move(clean.offsets);
   arrays.own_neighbours = std::move(clean.neighbours);
@@ -150,7 +150,7 @@ GraphArrays clean_graph(const GraphView& graph, Check check, Symmetry symmetry) 
   const bool trusted = check == Check::none;
   GraphArrays arrays = graph_arrays(graph, trusted);
   if (trusted && symmetry == Symmetry::require) return arrays;
-  // Check::fast looks for asymmetry too: on an asymmetric graph the methods would write outside their arrays.
+  // also for Check::fast: on an asymmetric graph the methods would write outside their arrays
   const GraphFindings found = examine(arrays, true);
   refuse_faults(graph, arrays, found);
   const bool mirror = found.asymmetry != 0 && (symmetry == Symmetry::mirror || check == Check::fast);

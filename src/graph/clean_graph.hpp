@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-/// A graph that owns its arrays: n + 1 offsets from 0, neighbours, and a weight for each of them or none.
+/// A graph that owns its arrays: n + 1 offsets from 0, neighbours, and a weight for each neighbour or none.
 struct OwnedGraph {
   std::vector<Offset> offsets;
   std::vector<Index> neighbours;
@@ -21,18 +21,18 @@ struct OwnedGraph {
 /// Makes a caller's graph clean: ascending rows, no loops, no repeats, every edge in both rows. Makes no copy
 /// of arrays that are clean already and have the library's types; otherwise `notes` report what was done.
 ///
-/// @param check     full, fast: see `Check`; fast mirrors an asymmetric pattern. none: the arrays are taken
-///                  as they are, except that types are converted, unless `symmetry` is mirror
-/// @param symmetry  mirror: the pattern of A + Aᵀ, weights of (A + Aᵀ) / 2
+/// @param check     full, fast: see `Check`; fast mirrors an asymmetric pattern. none: only converts types,
+///                  unless `symmetry` is mirror
+/// @param symmetry  mirror: an asymmetric graph gets the pattern of A + Aᵀ and the weights of (A + Aᵀ) / 2
 /// @throws InvalidArgument, TooLarge as `meshorder::check`
 /// @note O(n + entries · log degree), on all threads of the arena.
 GraphArrays clean_graph(const GraphView& graph, Check check, Symmetry symmetry);
 
-/// Returns a clean copy. The argument may have loops, repeats and unsorted rows; its numbers must be in
-/// range. Weights of repeats are added in ascending order, so that both rows of an edge get the same bits.
-/// O(n + entries · log degree); O(n · log degree + entries) if rows ascend.
+/// Returns a copy with ascending rows, without loops and repeats. The numbers of the graph must be in range.
+/// Weights of repeats are added in ascending order, so that both rows of an edge get the same bits. O(n +
+/// entries · log degree); O(n · log degree + entries) if rows ascend.
 ///
-/// @param findings  of the graph
+/// @param findings  what `examine` found in the graph
 OwnedGraph cleaned_copy(const GraphArrays& graph, const GraphFindings& findings);
 
 /// Returns the clean graph of A + Aᵀ, with weights of (A + Aᵀ) / 2. O(n + entries · log degree).

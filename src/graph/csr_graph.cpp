@@ -34,8 +34,8 @@ void tidy_rows(std::vector<Offset>& starts, std::vector<Index>& columns, bool ke
 
 namespace {
 
-/// Writes the new numbers of a row's vertices, sorted. A short row is sorted by counting for each number how
-/// many are smaller: without unpredictable branches, two to three times faster than std::sort.
+/// Writes the new numbers of a row's vertices, sorted. In a short row, each number's place is the count of
+/// smaller numbers: without unpredictable branches, two to three times faster than std::sort.
 void write_renumbered(std::span<const Index> row, std::span<const Index> old_to_new, Index* target) {
   constexpr std::size_t kFew = 32;
   const std::size_t size = row.size();

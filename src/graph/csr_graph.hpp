@@ -9,8 +9,8 @@
 namespace meshorder {
 
 /// An undirected graph in compressed sparse rows: the neighbours of vertex v are
-/// `neighbours[offsets[v]] … neighbours[offsets[v + 1] − 1]`, rising, without v itself and without repeats.
-/// Every edge is in the rows of both its ends.
+/// `neighbours[offsets[v]] … neighbours[offsets[v + 1] − 1]`, ascending, without v itself and without
+/// repeats. Every edge is in the rows of both its ends.
 struct CsrGraph {
   std::vector<Offset> offsets{0};  ///< n + 1
   std::vector<Index> neighbours;   ///< twice the number of edges
@@ -24,8 +24,8 @@ struct CsrGraph {
   bool operator==(const CsrGraph&) const = default;
 };
 
-/// A view of a clean undirected graph; the algorithms take graphs in this form. Refers to a `CsrGraph` or to
-/// a caller's arrays in the form described for CsrGraph. A copy takes four words.
+/// A view of a clean undirected graph; the algorithms take graphs in this form. Refers to the arrays of a
+/// `CsrGraph`, or to a caller's arrays in the same form. A copy takes four words.
 struct GraphRef {
   std::span<const Offset> offsets;    ///< n + 1, from 0
   std::span<const Index> neighbours;  ///< twice the number of edges
@@ -49,7 +49,7 @@ struct Edge {
   Index b;
 };
 
-/// Returns the graph of 0 … n−1 with these edges; loops are dropped and repeats merged. Throws
+/// Returns the graph of vertices 0 … n−1 with these edges; drops loops and merges repeats. Throws
 /// InvalidArgument for an end outside 0 … n−1. O(n + edges · log degree).
 CsrGraph graph_from_edges(Index n, std::span<const Edge> edges);
 
@@ -60,7 +60,7 @@ CsrGraph renumbered(GraphRef graph, std::span<const Index> old_to_new);
 /// that leave the list are dropped. O(n of `graph` + entries of the listed rows · log degree).
 CsrGraph induced_subgraph(GraphRef graph, std::span<const Index> vertices);
 
-/// Sorts every row of compressed sparse rows, drops repeats and, unless `keeps_loops`, loops, and closes the
+/// Sorts every row of compressed sparse rows, drops repeats, drops loops unless `keeps_loops`, and closes the
 /// gaps. O(entries · log row length).
 ///
 /// @param starts  rows + 1

@@ -24,8 +24,8 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31U);
 }
 
-/// Returns a number that differs from run to run, so nobody can make a file whose asymmetric entries add up
-/// to zero.
+/// Returns a number that differs from run to run, so that nobody can make a file whose asymmetric entries
+/// have hashes that add up to zero.
 std::uint64_t secret() {
   static const auto number =
       static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());

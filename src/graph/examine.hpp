@@ -7,13 +7,13 @@
 
 namespace meshorder {
 
-/// Counts of deviations from a clean graph, and a hash of its asymmetry.
+/// Counts of a graph's deviations from a clean graph, and a hash of the graph's asymmetry.
 struct GraphFindings {
   Offset out_of_range = 0;  ///< neighbours outside 0 … n−1
   Offset bad_weights = 0;   ///< not positive or not finite
   Offset loops = 0;
   Offset unordered = 0;         ///< neighbours ≤ the neighbour before them in their row; includes repeats
-  std::uint64_t asymmetry = 0;  ///< Σ h(u, v) for u < v, −h for u > v, modulo 2⁶⁴; 0 for a symmetric graph
+  std::uint64_t asymmetry = 0;  ///< Σ hash(v, u) if v < u, −hash(v, u) if v > u, modulo 2⁶⁴; see `examine`
 
   [[nodiscard]] bool is_clean() const noexcept { return loops == 0 && unordered == 0; }
   GraphFindings& operator+=(const GraphFindings& other) noexcept;
@@ -21,15 +21,15 @@ struct GraphFindings {
 
 /// Examines all entries in one pass.
 ///
-/// The asymmetry of an entry includes its weight. The sum is 0 for a symmetric graph whose repeats are
+/// The hash of an entry includes the weight. `asymmetry` is 0 for a symmetric graph whose repeats are
 /// symmetric too; for a random asymmetric graph it is 0 with probability 2⁻⁶⁴.
 ///
 /// @param symmetry  whether to compute `asymmetry`
 /// @note O(n + entries), on all threads; the result does not depend on their number.
 GraphFindings examine(const GraphArrays& graph, bool symmetry);
 
-/// Throws InvalidArgument for the first neighbour out of range or the first bad weight; returns if all are
-/// valid. The message quotes the caller's numbers in `view`. O(n + entries).
+/// Throws InvalidArgument for the first entry with a neighbour out of range or a bad weight; returns if there
+/// is none. The message quotes the caller's numbers in `view`. O(n + entries).
 void refuse_faults(const GraphView& view, const GraphArrays& graph, const GraphFindings& findings);
 
 /// Throws InvalidArgument for the first edge of a clean graph that is in one row only or has two weights;

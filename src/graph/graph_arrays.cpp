@@ -12,7 +12,7 @@
 namespace meshorder {
 namespace {
 
-/// These two functions return number ± base. They use unsigned arithmetic, which may wrap around: a faulty
+/// These two functions return number − base and number + base. They use unsigned arithmetic, because a faulty
 /// offset can be the smallest or largest int64.
 Offset less_base(std::int64_t number, int base) {
   return static_cast<Offset>(static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(base));
@@ -21,7 +21,7 @@ Offset plus_base(std::int64_t number, int base) {
   return static_cast<Offset>(static_cast<std::uint64_t>(number) + static_cast<std::uint64_t>(base));
 }
 
-/// Takes the offsets as they are, or widened and counted from 0.
+/// Makes `arrays` refer to the offsets if they have 64 bits and base 0, else to a converted copy.
 void take_offsets(const GraphView& graph, GraphArrays& arrays) {
   const IndexView& offsets = graph.offsets;
   if (offsets.empty()) {
@@ -41,7 +41,7 @@ void take_offsets(const GraphView& graph, GraphArrays& arrays) {
   arrays.offsets = arrays.own_offsets;
 }
 
-/// Takes the neighbours as they are, or narrowed and counted from 0.
+/// Makes `arrays` refer to the neighbours if they have 32 bits and base 0, else to a converted copy.
 void take_neighbours(const GraphView& graph, GraphArrays& arrays) {
   constexpr Offset kEntries = 262144;  // entries that a thread converts at a time
   const IndexView& neighbours = graph.neighbours;

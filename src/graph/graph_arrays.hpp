@@ -14,7 +14,7 @@ namespace meshorder {
 /// these types already (int64 or uint64 offsets, int32 or uint32 neighbours, double weights, base 0), and
 /// holds converted copies of the caller's other arrays.
 ///
-/// Movable, not copyable: the spans refer to the caller's arrays or to the own ones.
+/// Movable, not copyable: the spans of a copy would refer to the converted arrays of the original.
 struct GraphArrays {
   GraphArrays() = default;
   GraphArrays(GraphArrays&&) = default;
@@ -23,10 +23,9 @@ struct GraphArrays {
   GraphArrays& operator=(const GraphArrays&) = delete;
   ~GraphArrays() = default;
 
-  std::span<const Offset> offsets;  ///< n + 1, ascending from 0 to the number of neighbours
-  std::span<const Index>
-      neighbours;  ///< unchecked in the caller's array; −1 in a copy for numbers out of range
-  std::span<const double> weights;  ///< unchecked; one for each neighbour, or none
+  std::span<const Offset> offsets;    ///< n + 1, ascending from 0 to the number of neighbours
+  std::span<const Index> neighbours;  ///< unchecked; in a converted copy, −1 replaces numbers out of range
+  std::span<const double> weights;    ///< unchecked; one for each neighbour, or none
   std::vector<Offset> own_offsets;
   std::vector<Index> own_neighbours;
   std::vector<double> own_weights;
@@ -35,11 +34,12 @@ struct GraphArrays {
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
 };
 
-/// Converts a view. Checks sizes and, unless `trusted`, offsets. Does not check neighbours and weights.
+/// Converts a view. Checks its base, sizes and, unless `trusted`, offsets; not neighbours and weights.
 ///
-/// @throws InvalidArgument for sizes that do not match, offsets that descend, a base that is neither 0 nor 1
+/// @throws InvalidArgument for sizes that do not match, offsets that descend or do not begin at the base, a
+///         base other than 0 and 1
 /// @throws TooLarge for more than 2,147,483,647 vertices
-/// @note O(n) without copies, else O(n + entries), on all threads.
+/// @note O(n) if neighbours and weights are not copied, else O(n + entries); neighbours on all threads.
 GraphArrays graph_arrays(const GraphView& graph, bool trusted = false);
 
 }  // namespace meshorder

@@ -47,8 +47,8 @@ struct StoredEntry<Position> {
 
 namespace {
 
-/// Returns whether the columns of consecutive rows lie far apart; writing column by column would then wait
-/// for memory. Looks at about a thousand rows.
+/// Returns whether consecutive rows have columns far apart, so that `by_columns` would wait for memory. Looks
+/// at about a thousand rows.
 bool is_scattered(IncidenceRef incidence) {
   constexpr Index kLooks = 1000;
   constexpr Index kFar = 65536;  // the entries of this many columns fill a cache of some megabytes
@@ -87,7 +87,7 @@ std::vector<Index> by_columns(Index row_count, const EntriesOf& entries_of,
   return rows;
 }
 
-/// Like `by_columns`, for scattered columns, on all threads.
+/// Like `by_columns`, but for scattered columns and on all threads.
 ///
 /// @param offsets  written: where each column begins, and the end
 template <class EntriesOf>
@@ -146,14 +146,14 @@ Offset common_size(IncidenceRef elements) {
 
 namespace {
 
-/// Rows of a graph one after another, entries within a row in any order.
+/// Rows of a graph, one after another; the entries of a row are in any order.
 struct Rows {
   std::vector<Index> neighbours;
   Offset end = 0;  ///< number of neighbours in use
 };
 
-/// Finds the vertices of each element in the list of all vertices. `Size` is the size of every element, so
-/// that the offsets need not be read; 0 if sizes differ.
+/// The vertices of each element. `Size` is the number of vertices that every element has, so that offsets
+/// need not be read; if it is 0, the offsets are read.
 template <int Size>
 struct Elements {
   IncidenceRef incidence;
@@ -166,7 +166,7 @@ struct Elements {
   }
 };
 
-/// Appends the neighbours of v. `seen_by[u] == v` marks the neighbours that the row already has.
+/// Appends the row of v. `seen_by[u] == v` marks vertices u that the row already has, and v itself.
 template <int Size>
 void append_row(Elements<Size> elements, const Incidence& at_vertex, Index v, std::vector<Index>& seen_by,
                 Rows& rows) {
@@ -197,7 +197,7 @@ void append_row(Elements<Size> elements, const Incidence& at_vertex, Index v, st
   rows.end = end;
 }
 
-/// Returns all rows, kRowsOfPart in each part, and sets the degrees: `degrees[v + 1]` is the degree of v.
+/// Returns the rows of all vertices, kRowsOfPart in each part, and sets `degrees[v + 1]` to the degree of v.
 template <int Size>
 std::vector<Rows> find_rows(Elements<Size> elements, std::vector<Offset>& degrees) {
   const Incidence at_vertex = transposed(elements.incidence);
@@ -230,8 +230,8 @@ std::vector<Rows> find_rows(IncidenceRef elements, std::vector<Offset>& degrees)
   }
 }
 
-/// Returns the symmetric graph with these rows, kRowsOfPart in each of `parts`. Its rows ascend, because
-/// writing a symmetric matrix by columns gives ascending rows. Each part is freed once it is read.
+/// Returns the symmetric graph with these rows, kRowsOfPart in each of `parts`. Writing a symmetric matrix by
+/// columns gives ascending rows. Frees each part once it is read.
 CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::vector<Rows> parts, bool scattered) {
   CsrGraph graph;
   graph.offsets = std::move(offsets);
@@ -258,8 +258,8 @@ struct LimitOnJoins {
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process
 LimitOnJoins limit_on_joins;
 
-/// Returns an upper bound on the number of entries that long rows give to the graph: each member of a row has
-/// at most all other members as neighbours.
+/// Returns an upper bound on the number of graph entries from long rows: each member of a row may have all
+/// other members as neighbours.
 std::uint64_t entries_of_long_rows(IncidenceRef rows) {
   std::vector<Offset> neighbours(static_cast<std::size_t>(rows.vertex_count), 0);
   for (Index e = 0; e < rows.size(); ++e) {

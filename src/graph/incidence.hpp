@@ -22,7 +22,7 @@ struct Incidence {
   }
 };
 
-/// A view of an incidence that does not own its arrays. Costs five words to copy.
+/// A view of an incidence; does not own the arrays. A copy takes five words.
 struct IncidenceRef {
   Index vertex_count = 0;
   std::span<const Offset> offsets;  ///< elements + 1, from 0
@@ -40,19 +40,21 @@ struct IncidenceRef {
   }
 };
 
-/// Returns the number of vertices of every element; 0 if elements have different numbers. O(elements).
+/// Returns the number of vertices that every element has; 0 if elements differ. O(elements).
 Offset common_size(IncidenceRef elements);
 
 /// Returns the elements at each vertex, ascending. O(entries).
 Incidence transposed(IncidenceRef incidence);
 
-/// Joins any two vertices of a common element: the vertex graph of a mesh (the paper, section 3). Vertices
-/// that an element repeats make no loop. Throws TooLarge if elements of more than `kManyJoined` vertices
-/// would make a graph beyond the memory limit. O(sum of element sizes squared).
+/// Returns the graph that joins any two vertices of a common element: the vertex graph of a mesh (the paper,
+/// section 3). The graph has no loops, even if an element repeats a vertex. Throws TooLarge if elements of
+/// more than `kManyJoined` vertices would make a graph beyond the memory limit. O(sum of element sizes
+/// squared).
 CsrGraph joined_vertices(IncidenceRef elements);
 
-/// Joins any two elements that share a vertex: the dual graph of the paper, section 4.1. This is
-/// `joined_vertices(transposed(elements))`, about 50 neighbours for an element of a tetrahedral mesh.
+/// Returns the graph that joins any two elements that share a vertex: the dual graph of the paper, section
+/// 4.1. Calls `joined_vertices(transposed(elements))`; elements of tetrahedral meshes have about 50
+/// neighbours.
 CsrGraph joined_by_vertex(IncidenceRef elements);
 
 }  // namespace meshorder

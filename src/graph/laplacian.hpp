@@ -9,13 +9,13 @@
 
 namespace meshorder {
 
-/// `M` real vectors of n entries stored together: the M entries of a vertex are side by side, and one pass
-/// over a graph serves all vectors.
+/// `M` real vectors of n entries, stored so that the M entries of a vertex are side by side: one pass over a
+/// graph serves all vectors.
 template <int M>
 using VectorBlock = std::vector<std::array<double, M>>;
 
-/// The Laplacian L = D − A of a weighted graph as an operator. Row v has the negative weight at each
-/// neighbour, and the sum of its weights on the diagonal. Constant vectors are in the null space.
+/// The Laplacian L = D − A of a weighted graph as an operator. Row v has minus the weight of each neighbour,
+/// and the sum of these weights on the diagonal. Constant vectors are in the null space.
 struct Laplacian {
   std::vector<Offset> offsets{0};  ///< n + 1
   std::vector<Index> neighbours;
@@ -64,7 +64,7 @@ struct Laplacian {
   }
 };
 
-/// Changes x in row v so that this row of L x = b holds. O(row).
+/// Sets row v of x so that row v of L x = b holds. O(row).
 template <int M, class RightSide>
 void relax_row(const Laplacian& laplacian, Index v, RightSide b, VectorBlock<M>& x) {
   const auto sum = laplacian.neighbour_sum<M>(v, x);
@@ -72,7 +72,7 @@ void relax_row(const Laplacian& laplacian, Index v, RightSide b, VectorBlock<M>&
   for (int m = 0; m < M; ++m) x[v][m] = (b(v, m) + sum[m]) * inverse;
 }
 
-/// Returns b − L x in row v. O(row).
+/// Returns row v of b − L x. O(row).
 template <int M>
 [[nodiscard]] std::array<double, M> residual_of_row(const Laplacian& laplacian, Index v,
                                                     const VectorBlock<M>& b, const VectorBlock<M>& x) {

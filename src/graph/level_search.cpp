@@ -60,10 +60,10 @@ void LevelSearch::arrange_found(std::span<Index> places, Index first, Index end,
   for (Index k = first; k < end; ++k) place_of_[places[k]] = k;
 }
 
-/// While threads read the rows of a level, `place_of_` holds a mark for each vertex that they find: the first
-/// row that has the vertex gives the largest mark, below 0. If two threads mark a vertex at once, the mark
-/// that is written later stays, and the vertex is among the findings of both; then the largest mark is
-/// restored. An atomic exchange would make the processor wait for one vertex at a time.
+/// While threads read the rows of a level, `place_of_` holds a negative mark for each vertex that they find;
+/// earlier rows give larger marks. If two threads mark a vertex at once, the later mark stays, and both
+/// threads list the vertex; the next loop restores the largest mark, and the one after it drops the other
+/// findings. An atomic exchange would make the processor wait for one vertex at a time.
 Index LevelSearch::find_next_level_together(std::span<Index> places, Index begin, Index end,
                                             Arrange arrange) {
   constexpr Index kAtOnce = 256;  // vertices that a thread takes together

@@ -10,8 +10,8 @@
 namespace meshorder {
 
 /// Breadth-first searches of one graph, level after level. All threads share large levels. For any number of
-/// threads, the vertices of a level are sorted by the first vertex that finds them, then by their place in
-/// its row.
+/// threads, the vertices of a level are sorted by the first vertex that finds them, then by place in that
+/// vertex's row.
 class LevelSearch {
  public:
   /// Sorts the vertices that one vertex has found, in place.
@@ -19,22 +19,22 @@ class LevelSearch {
 
   explicit LevelSearch(GraphRef graph);
 
-  /// Finds the component of a vertex that was not found before. O(component).
+  /// Finds the component of `start`, a vertex that no search has found. O(component).
   ///
-  /// @param places   receives the vertices in their order, from places[first] on
+  /// @param places   receives the component's vertices in the order of the search, from places[first] on
   /// @param arrange  null: keeps the order of the rows
-  /// @return the end of these places
+  /// @return the place after the last vertex
   Index run(Index start, std::span<Index> places, Arrange arrange = nullptr, Index first = 0);
 
-  /// Returns where each level of the last search begins in its places, and the end.
+  /// Returns the place at which each level of the last search begins, and the end of the last level.
   [[nodiscard]] std::span<const Index> level_start() const noexcept { return level_start_; }
-  /// Returns how many levels come after the first.
+  /// Returns the number of levels after the first, in the last search.
   [[nodiscard]] Index depth() const noexcept { return index_size(level_start_) - 2; }
 
   [[nodiscard]] bool has_found(Index v) const { return place_of_[v] >= 0; }
   /// Returns the place of each vertex that a search has found.
   [[nodiscard]] std::span<const Index> place_of() const noexcept { return place_of_; }
-  /// Lets a search find the vertices first … end − 1 again. They must be whole components.
+  /// Lets searches find the vertices first … end − 1 again; these must be whole components.
   void forget(Index first, Index end);
 
  private:

@@ -11,10 +11,10 @@
 
 namespace meshorder {
 
-// Loops over vertices visit rows anywhere in memory and search them; the results are unpredictable.
-// These functions prefetch rows a few steps ahead, and search without branches.
+// Loops over vertices read rows all over memory and branch on their entries unpredictably. These functions
+// prefetch rows a few steps ahead, and search without branches.
 //
-// GCC 12 drops calls of functions that only prefetch, as code without effect, unless they are inlined early.
+// GCC 12 drops calls of functions that only prefetch, unless they are inlined early.
 
 /// Prefetches the first two cache lines of a row, which hold at least 17 entries.
 [[gnu::always_inline]] inline void prefetch_entries(const Index* row) {
@@ -23,8 +23,8 @@ namespace meshorder {
   __builtin_prefetch(row + kLine);
 }
 
-/// Prefetches what a loop over vertices soon reads after the vertex at place `k` of the order: the offset of
-/// a row, then the row.
+/// Prefetches for a loop that reads the rows of vertices in `order` and has reached place k: the offset of
+/// the row 48 places ahead, and the row 24 places ahead.
 [[gnu::always_inline]] inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k) {
   constexpr Index kOffsetAhead = 48;
   constexpr Index kRowAhead = 24;
@@ -34,19 +34,19 @@ namespace meshorder {
   prefetch_entries(graph.neighbours.data() + graph.offsets[order[k + std::min(kRowAhead, last - k)]]);
 }
 
-/// Like `prefetch_row`, and prefetches the numbers of the vertices in a row: `numbers[u]` of neighbours u.
+/// Like `prefetch_row`, and prefetches `numbers[u]` of the neighbours u in the row 6 places ahead.
 [[gnu::always_inline]] inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k,
                                                 const Index* numbers) {
   constexpr Index kNumbersAhead = 6;
-  constexpr std::size_t kMost = 32;  // of a row; longer rows keep the processor busy by themselves
+  constexpr std::size_t kMost = 32;  // neighbours; longer rows keep the processor busy by themselves
   prefetch_row(graph, order, k);
   const std::span<const Index> row = graph[order[k + std::min(kNumbersAhead, index_size(order) - 1 - k)]];
   for (const Index u : row.first(std::min(row.size(), kMost))) __builtin_prefetch(numbers + u);
 }
 
-/// Calls `visit(u)` for the entries u of a row with `numbers[u] < limit`, in their order. Compares many
-/// entries before it visits any: a processor cannot predict which ones are visited. So it would visit a
-/// repeated entry twice. Other threads may write numbers.
+/// Calls `visit(u)` for the entries u of a row with `numbers[u] < limit`, in their order. Compares up to 32
+/// entries before it visits any, because a processor cannot predict which ones are visited: a repeated entry
+/// may be visited twice. Other threads may write numbers.
 template <class Visit>
 void for_each_below(std::span<const Index> row, std::span<Index> numbers, Index limit, const Visit& visit) {
   constexpr std::size_t kAtOnce = 32;
@@ -73,8 +73,8 @@ inline void prefetch_rows(std::span<const Offset> offsets, std::span<const Index
   for (const Index row : rows) prefetch_entries(entries.data() + offsets[row]);
 }
 
-/// Returns the number of entries of a rising row that are less than `value`: std::lower_bound without
-/// branches, which would be unpredictable. O(log row length).
+/// Returns the number of entries of an ascending row that are less than `value`, like std::lower_bound but
+/// without unpredictable branches. O(log row length).
 [[nodiscard]] inline Index entries_below(std::span<const Index> row, Index value) {
   Index left = index_size(row);
   Index below = 0;

@@ -82,15 +82,14 @@ std::vector<std::vector<Index>> connected_components(GraphRef graph) {
 
 namespace {
 
-/// Returns an array whose entries must all be written before they are read. The system clears a page when a
-/// thread first writes to it.
+/// Returns an uninitialised array. The system clears each page when a thread first writes to the page.
 std::unique_ptr<Index[]> unfilled_array(std::size_t size) {
   std::unique_ptr<Index[]> array = std::make_unique_for_overwrite<Index[]>(size);
   ask_for_large_pages(array.get(), size * sizeof(Index));
   return array;
 }
 
-/// Reads each row once: copies it while the search visits it.
+/// Makes the copy in one pass: copies each row when the search visits the row's vertex.
 BreadthFirstCopy copy_in_one_pass(GraphRef graph) {
   const Index n = graph.size();
   BreadthFirstCopy copy;
@@ -134,7 +133,7 @@ BreadthFirstCopy copy_in_one_pass(GraphRef graph) {
   return copy;
 }
 
-/// Searches first, then copies the rows.
+/// Makes the copy in two passes on all threads: searches, then copies the rows.
 BreadthFirstCopy copy_on_threads(GraphRef graph) {
   const auto n = static_cast<std::size_t>(graph.size());
   BreadthFirstCopy copy;
@@ -173,7 +172,7 @@ BreadthFirstCopy copy_on_threads(GraphRef graph) {
 
 BreadthFirstCopy breadth_first_copy(GraphRef graph) {
   constexpr Index kSmall = 1 << 15;
-  constexpr Index kFew = 2;  // as many threads gain less than it costs to read each row twice
+  constexpr Index kFew = 2;  // so few threads gain less than reading each row twice costs
   const bool is_shared = thread_count() > kFew && graph.size() >= kSmall;
   BreadthFirstCopy copy = is_shared ? copy_on_threads(graph) : copy_in_one_pass(graph);
   std::stable_sort(copy.components.begin(), copy.components.end(),

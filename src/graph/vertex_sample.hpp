@@ -10,8 +10,8 @@
 namespace meshorder {
 
 /// A sample of the vertices: all vertices if there are fewer than 262,144, else one of every 2, 4, 8 …
-/// consecutive vertices, 131,072 to 262,144 in all. A hash chooses each one, so that the sample does not
-/// follow the period of a lattice. The sample is the same in every run of the program.
+/// consecutive vertices, 131,072 to 262,144 in all. A hash chooses each sampled vertex, so that the sample
+/// does not follow the period of a lattice. The sample is the same in every run of the program.
 class VertexSample {
  public:
   explicit VertexSample(Index vertices)

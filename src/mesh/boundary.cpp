@@ -14,7 +14,7 @@
 namespace meshorder {
 namespace {
 
-/// Calls `visit(element, cell)` for every element.
+/// Calls `visit(element, cell)` with the number of each element and the number of its cell.
 template <class Visit>
 void for_elements(const Mesh& mesh, Visit visit) {
   const int highest = mesh.cells.highest_dimension();
@@ -24,7 +24,7 @@ void for_elements(const Mesh& mesh, Visit visit) {
   }
 }
 
-/// Removes the facets that several elements have; sorts the other facets by their elements, ascending.
+/// Removes facets that several elements have, which must be adjacent; sorts the other facets by element.
 void keep_unmatched(std::vector<ElementFacet>& facets) {
   auto kept = facets.begin();
   for (auto begin = facets.begin(); begin != facets.end();) {
@@ -39,8 +39,7 @@ void keep_unmatched(std::vector<ElementFacet>& facets) {
 }
 
 /// Removes the facets whose corners all belong to one polyhedron: such a facet separates its element from the
-/// polyhedron. For each facet, chooses the corner with the fewest polyhedra and compares the corners of these
-/// polyhedra.
+/// polyhedron. Tests each facet against the polyhedra at the facet's corner with the fewest polyhedra.
 void drop_facets_of_polyhedra(const Mesh& mesh, std::vector<ElementFacet>& facets) {
   std::vector<std::pair<Index, Index>> polyhedra;  // a vertex, and a polyhedron that has it as a corner
   for (Index c = 0; c < mesh.cell_count(); ++c) {
@@ -68,7 +67,7 @@ void drop_facets_of_polyhedra(const Mesh& mesh, std::vector<ElementFacet>& facet
   });
 }
 
-/// Removes the facets of `element` from the front of `facets` and returns them.
+/// Removes the facets of `element` from the front of `facets` and returns the removed facets.
 std::span<const ElementFacet> take_facets_of(Index element, std::span<const ElementFacet>& facets) {
   std::size_t count = 0;
   while (count < facets.size() && facets[count].element == element) ++count;
@@ -94,7 +93,7 @@ void add_face(const Mesh& mesh, Index c, const std::vector<int>& positions,
   for (const int position : positions) face.push_back(cell[position]);
   const Point inner = centre(mesh, cell.first(corners(mesh.cells.shapes[c], static_cast<int>(cell.size()))));
   const Point& a = mesh.points[face[0]];
-  // the cross product of a quadrilateral's diagonals, or of two sides of a triangle
+  // for a triangle, the cross product of two sides; for a quadrilateral, that of the diagonals
   const Point normal =
       face.size() == 3
           ? cross(minus(mesh.points[face[1]], a), minus(mesh.points[face[2]], a))

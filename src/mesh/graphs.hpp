@@ -8,7 +8,7 @@
 
 namespace meshorder {
 
-/// Returns the cells of a mesh in the form that the orderings take. Refers to the mesh. O(blocks).
+/// Returns the cells of a mesh in the form that the orderings take. The result refers to the mesh. O(blocks).
 inline CellArrays cell_arrays(const Mesh& mesh) {
   CellArrays arrays;
   arrays.vertex_count = mesh.vertex_count();
@@ -19,13 +19,13 @@ inline CellArrays cell_arrays(const Mesh& mesh) {
   return arrays;
 }
 
-/// Returns the graph that joins any two vertices of a common element, or of a piece of it (vertex_joins.hpp).
+/// Returns the graph that joins the vertices of each element, or of each of its pieces (vertex_joins.hpp).
 /// Vertices without elements have no neighbours. O(sum of piece sizes squared · log degree).
 inline CsrGraph vertex_graph(const Mesh& mesh) { return vertex_graph(cell_arrays(mesh)); }
 
-/// Returns the graph of elements that share a facet, numbered in the order of cells: a face for volumes, an
-/// edge for surfaces, an end for lines. Two facets are the same if they have the same corners, in any order.
-/// O(facets · log facets at a vertex).
+/// Returns the graph that joins elements that share a facet: a face of a volume, an edge of a surface, an end
+/// of a line. Elements are in the order of cells. Facets are the same if they have the same corners, in any
+/// order. O(facets · log facets at a vertex).
 inline CsrGraph facet_graph(const Mesh& mesh) {
   const CellArrays cells = cell_arrays(mesh);
   return joined_by_facet(cells, CellSelection::elements(cells));

@@ -11,7 +11,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the value as a 64-bit integer; nothing if it is not an integer of 64 bits.
+/// Returns a whole number as int64; nothing for other values, and for reals of magnitude 2⁶² or more.
 template <class Value>
 std::optional<std::int64_t> whole(const Value& value) {
   if constexpr (std::is_integral_v<Value>) {
@@ -24,7 +24,7 @@ std::optional<std::int64_t> whole(const Value& value) {
   return std::nullopt;
 }
 
-/// Returns the values of an array with one integer in each row; nothing for other arrays.
+/// Returns the values of an array if each row is one whole number; else nothing.
 std::optional<std::vector<std::int64_t>> whole_numbers(const DataArray& array) {
   if (array.components != 1) return std::nullopt;
   return std::visit(
@@ -46,7 +46,7 @@ bool has_cell_sets(const Mesh& mesh) {
                      [](const EntitySet& set) { return set.association == Association::cells; });
 }
 
-/// Returns "label on cells, part on vertices, sets".
+/// Returns what a mesh can be grouped by, such as "label on cells, part on vertices, sets"; or "none".
 std::string usable_names(const Mesh& mesh) {
   std::string list;
   for (const DataArray& array : mesh.data) {
@@ -57,8 +57,8 @@ std::string usable_names(const Mesh& mesh) {
   return list.empty() ? "none" : list;
 }
 
-/// Returns the array of that name, or of the name after "cells:" or "vertices:"; nullptr if there is no such
-/// array.
+/// Returns the array called `name`, first among those on cells, or else the array that "cells:NAME" or
+/// "vertices:NAME" means; nullptr if there is no such array.
 const DataArray* array_meant(const Mesh& mesh, std::string_view name) {
   for (const Association association : {Association::cells, Association::vertices}) {
     if (const DataArray* array = find_array(mesh, name, association)) return array;
@@ -70,7 +70,8 @@ const DataArray* array_meant(const Mesh& mesh, std::string_view name) {
   return nullptr;
 }
 
-/// Numbers the distinct values, ascending, and returns the number for every vertex or cell.
+/// Sets `values` to the distinct numbers, ascending. Returns the index in `values` of the number of each
+/// vertex or cell, or `values.size()` if it has none.
 std::vector<Index> numbered(const DataArray& array, const std::vector<std::int64_t>& numbers, Index count,
                             std::vector<std::int64_t>& values) {
   values = numbers;
@@ -85,7 +86,7 @@ std::vector<Index> numbered(const DataArray& array, const std::vector<std::int64
   return groups;
 }
 
-/// Returns for each vertex the smallest group among its elements; `none` for a vertex without elements.
+/// Returns the smallest group among the elements at each vertex; `none` for a vertex without elements.
 std::vector<Index> smallest_at_vertices(const Mesh& mesh, const std::vector<Index>& of_cells, Index none) {
   std::vector<Index> groups(mesh.points.size(), none);
   const int highest = mesh.cells.highest_dimension();
@@ -96,7 +97,7 @@ std::vector<Index> smallest_at_vertices(const Mesh& mesh, const std::vector<Inde
   return groups;
 }
 
-/// Makes a group for each set of cells that is, for at least one cell, the smallest set with this cell.
+/// Groups each cell by the smallest set that has the cell. Sets that are no cell's smallest make no group.
 Grouping grouping_by_sets(const Mesh& mesh) {
   std::vector<const EntitySet*> set_of(mesh.cells.shapes.size(), nullptr);
   for (const EntitySet& set : mesh.sets) {

@@ -25,20 +25,20 @@ struct Grouping {
   [[nodiscard]] Index count() const noexcept { return index_size(values) + 1; }
 };
 
-/// Groups a mesh by an array with one integer for each cell or vertex. Its values may be of an integer type,
-/// or real numbers without fractions, as TetGen writes regions.
+/// Groups a mesh by an array with one whole number for each cell or vertex. The numbers may be of a real
+/// type, as TetGen's regions are.
 ///
-/// An array on cells groups the cells, and through them the vertices: a vertex belongs to the smallest value
-/// among its elements, the cells of the highest dimension. An array on vertices groups only the vertices. If
-/// cells and vertices both have an array of that name, the array on cells is used; "cells:NAME" and
-/// "vertices:NAME" choose one of them.
+/// An array on cells groups the cells and the vertices: each vertex gets the smallest value among its
+/// elements, the cells of the highest dimension. An array on vertices groups only the vertices. If cells and
+/// vertices both have an array of that name, the array on cells is used; "cells:NAME" and "vertices:NAME"
+/// choose one of them.
 ///
-/// "sets", if no array has that name, groups the cells by the mesh's sets of cells, such as Vega's regions
-/// and Gmsh's named physical groups. A cell in several sets belongs to the group of the smallest set (ties:
-/// the first in the file). The value of a group is the index of its set in `mesh.sets`.
+/// If no array is called "sets", that name groups the cells by the mesh's sets of cells, such as Vega's
+/// regions and Gmsh's named physical groups. A cell in several sets belongs to the group of the smallest set
+/// (ties: the first in the file). The value of a group is the index of its set in `mesh.sets`.
 ///
-/// Throws InvalidArgument, which lists the usable arrays, if there is no such array or it holds other values.
-/// O(size of the mesh · log groups).
+/// Throws InvalidArgument, which lists the usable arrays, if there is no such array or its values are not
+/// whole numbers. O(size of the mesh + rows · log rows).
 Grouping grouping_by(const Mesh& mesh, std::string_view name);
 
 /// The size of one group: its value (none for the group without value), the name of its set (when grouped by

@@ -51,7 +51,7 @@ void check_options(const ProceduralOptions& options, double vertices) {
   }
 }
 
-/// Returns vertices at lattice positions in [0, 1]³, jittered inside, and six tetrahedra for each cube.
+/// Returns a mesh of [0, 1]³: vertices at lattice positions, jittered inside; six tetrahedra for each cube.
 Mesh cut_lattice(const Lattice& lattice, const ProceduralOptions& options) {
   Mesh mesh;
   Random random(options.seed);
@@ -107,9 +107,9 @@ double volume(const std::array<Point, 4>& p) {
          6;
 }
 
-/// Applies `map` to every vertex. Where the map flattens cubes, at the rim and along diagonals, jitter could
-/// invert tetrahedra. If a tetrahedron has less than a tenth of its regular volume, its vertices lose their
-/// jitter.
+/// Applies `map` to every vertex. The map flattens cubes at the rim and along diagonals, where jitter could
+/// invert tetrahedra: if a tetrahedron has less than a tenth of its volume without jitter, its vertices lose
+/// their jitter.
 template <class Map>
 void bend(Mesh& mesh, const Lattice& lattice, Map map) {
   constexpr double kMinShare = 0.1;

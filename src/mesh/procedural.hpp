@@ -9,7 +9,7 @@ namespace meshorder {
 
 /// Options of a procedural tetrahedral mesh. Each cube of a lattice is cut into six tetrahedra around a
 /// diagonal (Kuhn 1960); inner vertices are moved at random by up to `jitter` of a lattice step along each
-/// axis. All tetrahedra have positive volume; for that, a few vertices of ball and torus have no jitter.
+/// axis. All tetrahedra have positive volume, because a few vertices of ball and torus have no jitter.
 struct ProceduralOptions {
   Index size = 20;         ///< lattice cubes across the shape, at least 1
   double jitter = 0.15;    ///< 0 … 0.15
@@ -19,7 +19,7 @@ struct ProceduralOptions {
 /// Makes the unit cube: (size + 1)³ vertices, 6 size³ tetrahedra.
 Mesh make_grid(const ProceduralOptions& options);
 
-/// Makes the unit ball: the cube's lattice, mapped into the ball, with the same numbers of vertices and
+/// Makes the ball of radius 1 from the lattice of `make_grid`, with the same numbers of vertices and
 /// tetrahedra.
 Mesh make_ball(const ProceduralOptions& options);
 

@@ -77,7 +77,7 @@ void sort_ids_within_classes(std::vector<std::int64_t>& ids, const std::vector<I
   for (std::size_t c = 0; c < ids.size(); ++c) ids[c] = by_class[classes[c]][next[classes[c]]++];
 }
 
-/// Moves vertices and cells with their arrays and sets, but not ids and blocks.
+/// Moves vertices and cells with their arrays, sets and format metadata, but not ids and blocks.
 void move_all(Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
   mesh.points = moved(vertices, mesh.points);
   mesh.cells = reordered(std::move(mesh.cells), vertices, cells);
@@ -182,8 +182,8 @@ void move_mesh(Mesh& mesh, const Permutation& vertices, const Permutation& cells
 
 namespace {
 
-/// Returns the properties that cells of one type share: −dimension, shape and size. Sorting by them puts the
-/// highest dimension first.
+/// Returns the sort key that cells of one type share: −dimension, shape, number of vertices. The highest
+/// dimension comes first.
 std::array<int, 3> type_of(const Cells& cells, Index c) {
   const Shape shape = cells.shapes[c];
   return {-dimension(shape), static_cast<int>(shape), cells.vertex_count(c)};

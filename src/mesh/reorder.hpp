@@ -20,23 +20,23 @@ struct EnumNames<Ids> {
                                     std::pair{Ids::attach, "attach"}};
 };
 
-/// Computes the order that the public `reorder` gives a mesh, which stays unchanged. `graph` is the mesh's
-/// vertex graph; `options.ids` and `options.format` are not used. Throws InvalidArgument for unknown methods
-/// and arrays.
+/// Computes the order by which the public `reorder` moves a mesh, but does not change the mesh. `graph` is
+/// the mesh's vertex graph; `options.ids` and `options.format` are not used. Throws as `reorder`, but does
+/// not check the mesh.
 MeshOrder compute_reordering(const Mesh& mesh, const CsrGraph& graph, const ReorderOptions& options);
 
 /// Like `move_mesh`, with the order that `compute_reordering` returned.
 void apply_reordering(Mesh& mesh, const MeshOrder& order, Ids ids = Ids::renumber);
 
-/// Like the public `apply_reordering`, but does not check the mesh. For `Ids::keep` the mesh must have ids.
+/// Like the public `apply_reordering`, but does not check the mesh. For `Ids::keep`, ids must exist already.
 void move_mesh(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids);
 
-/// Returns the places of cells sorted by dimension, highest first, then by type, in their old order within a
-/// type; nothing if they are sorted so. For formats that keep the cells of a type together. O(cells).
+/// Returns the permutation that sorts cells by dimension, highest first, then by type, stably; nothing if the
+/// cells are sorted already. For formats that keep the cells of a type together. O(cells · log cells).
 std::optional<Permutation> places_by_type(const Cells& cells);
 
-/// Moves the cells to `places_by_type`, makes each type a block, and returns the applied permutation, or
-/// nothing if no cell moves. O(size of the mesh).
+/// Moves the cells by `places_by_type`, makes each type a block, and returns that permutation, or nothing if
+/// no cell moves. O(size of the mesh + cells · log cells).
 std::optional<Permutation> group_cells_by_type(Mesh& mesh);
 
 /// Undoes a permutation of cells and gives the mesh its old blocks. O(size of the mesh).

@@ -12,7 +12,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the corners of a cell's simplices as positions in the cell, D + 1 for each simplex.
+/// Returns the simplices of a cell: for each simplex, the positions of its corners in the cell.
 std::vector<int> pieces(Shape shape, int vertices) {
   switch (shape) {
     case Shape::line:

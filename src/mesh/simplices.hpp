@@ -10,8 +10,8 @@
 
 namespace meshorder {
 
-/// Simplices of one dimension D, each on D + 1 vertices: lines, triangles or tetrahedra. A view that does not
-/// own its array.
+/// A view of simplices of one dimension D, each of D + 1 vertices: lines, triangles or tetrahedra. Does not
+/// own the array.
 struct SimplicesRef {
   int dimension = 0;                ///< 0 if there are none
   std::span<const Index> vertices;  ///< simplex s has `vertices[(D + 1) s] … vertices[(D + 1) s + D]`
@@ -36,16 +36,16 @@ struct Simplices {
   [[nodiscard]] Offset size() const noexcept { return SimplicesRef(*this).size(); }
 };
 
-/// Cuts the mesh's elements, in their order, into simplices on their corners: a hexahedron into six
+/// Cuts the elements of the mesh, in their order, into simplices on their corners: a hexahedron into six
 /// tetrahedra, a wedge into three, a pyramid into two, a polygon into a fan of triangles. Ignores mid-side
 /// nodes and cells of lower dimension. A polyhedron, whose faces are not known, becomes a chain of
-/// tetrahedra, each on four successive corners: they touch the same vertices as a true cut, but do not fill
-/// the polyhedron. The pieces of a cell depend only on the order of its corners, so that reordering the mesh
-/// reorders the simplices and changes no simplex. O(cells).
+/// tetrahedra, each on four successive corners: the tetrahedra touch the same vertices as a true cut, but do
+/// not fill the polyhedron. The simplices of a cell depend only on the order of its corners: reordering the
+/// mesh reorders the simplices, but does not change any. O(cells).
 Simplices cut_into_simplices(const Mesh& mesh);
 
 /// The simplices that `cut_into_simplices` makes of a mesh. If every cell is a simplex without mid-side
-/// nodes, they refer to the mesh's own array and take no memory.
+/// nodes, the simplices refer to the mesh's own array.
 class CellSimplices {
  public:
   /// No simplices.
@@ -70,13 +70,13 @@ class CellSimplices {
   std::vector<Offset> starts_;  ///< the first simplex of each cell; empty if each cell is one simplex
 };
 
-/// Returns the visible surface of a mesh as triangles on its corners. For volumes: the faces that exactly one
-/// cell has, including the faces of cavities. They are counterclockwise as seen from outside, whatever the
-/// orientation of the cell (the faces of a cell without volume are left as they are). For a surface mesh: its
-/// cells. Quadrilaterals and polygons are cut into fans. Faces of polyhedra are not known and are left out,
-/// as are the faces of other cells whose corners all belong to one polyhedron. Triangles are in the order of
-/// cells. Throws InputError for a mesh without cells of two or three dimensions. O(facets · log facets at a
-/// vertex) time; with polyhedra, more for each facet at their corners.
+/// Returns the visible surface of a mesh as triangles of cell corners. For a volume mesh: the faces that
+/// exactly one cell has, including the faces of cavities, counterclockwise as seen from outside, whatever the
+/// orientation of the cell (unless it has no volume). For a surface mesh: its cells. Quadrilaterals and
+/// polygons are cut into fans. Faces of polyhedra are not known and are left out, as are the faces of other
+/// cells whose corners all belong to one polyhedron. Triangles are in the order of cells. Throws InputError
+/// for a mesh without cells of two or three dimensions. O(facets · log facets at a vertex) time; with
+/// polyhedra, more for each facet at their corners.
 std::vector<std::array<Index, 3>> boundary_triangles(const Mesh& mesh);
 
 /// Returns the faces that exactly one tetrahedron has, ascending, as 4 · tetrahedron + k; face k is opposite

@@ -16,7 +16,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the number of entries divided by the size of all b × b blocks that have an entry.
+/// Returns the number of entries divided by the number of positions in all b × b blocks that have an entry.
 double fill_of_blocks(const EntryPattern& pattern, Index b) {
   std::vector<Index> seen_by(pattern.rows() / b, -1);  // for each block of columns, the last block of rows
   Offset blocks = 0;

@@ -13,8 +13,8 @@
 
 namespace meshorder {
 
-/// The facts that readers of matrices and graphs attach to a mesh. Its vertices are the rows of a square
-/// matrix, its lines and vertex cells are the stored entries, each from row to column.
+/// The facts that readers of matrices and graphs attach to a mesh. The vertices of the mesh are the rows of a
+/// square matrix; its lines, from row to column, and its vertex cells are the stored entries.
 struct StoredMatrix : FormatMetadata {
   bool is_graph = false;           ///< a graph of vertices and edges, without entries on the diagonal
   bool is_half = false;            ///< each line represents two entries, (i, j) and (j, i)
@@ -29,11 +29,11 @@ struct StoredMatrix : FormatMetadata {
 const StoredMatrix* stored_matrix(const Mesh& mesh);
 
 /// Returns the mesh that the reader of a matrix file would make of this matrix: rows at the origin, entries
-/// in their order. Throws InvalidArgument, TooLarge as `check`; a pattern need not be symmetric. O(n +
+/// in their order. Throws as `check`, but not for asymmetry; TooLarge also for 2³¹ entries or more. O(n +
 /// entries).
 Mesh matrix_mesh(const GraphView& matrix);
 
-/// Returns whether the points of a mesh differ. The points of a matrix are all 0 unless given separately.
+/// Returns whether any two points of a mesh differ. The points of a matrix are all 0 unless given separately.
 bool has_places(const Mesh& mesh);
 
 /// The positions of all entries of a matrix, even if the file stores only one half. Row i has entries in the
@@ -50,14 +50,14 @@ struct EntryPattern {
   bool operator==(const EntryPattern&) const = default;
 };
 
-/// Returns the pattern of the matrix that a mesh represents; in other meshes each line is one entry.
-/// O(entries · log row length).
+/// Returns the pattern of the matrix that a mesh represents. Without a StoredMatrix, each cell is an entry,
+/// from its first to its last vertex. O(entries · log row length).
 EntryPattern entry_pattern(const Mesh& mesh);
 
 /// Returns whether the pattern has an entry (j, i) for each entry (i, j). O(entries).
 bool is_symmetric(const EntryPattern& pattern);
 
-/// Returns the pattern of P A P′: row and column i become `rows.old_to_new()[i]`. O(entries · log row
+/// Returns the pattern of P A Pᵀ: row and column i become `rows.old_to_new()[i]`. O(entries · log row
 /// length).
 EntryPattern moved(const Permutation& rows, const EntryPattern& pattern);
 
@@ -66,11 +66,11 @@ struct PatternFacts {
   Index most_in_row = 0;
   bool is_symmetric = true;
   Index missing_diagonal = 0;  ///< rows without an entry on the diagonal
-  /// The largest b of 2 … 8 such that b divides the number of rows and entries fill at least the share
-  /// `kFullBlocks` of the b × b blocks that have an entry; 1 if there is no such b.
+  /// Size of blocks: the largest b of 2 … 8 that divides the number of rows and for which entries fill at
+  /// least the share `kFullBlocks` of all b × b blocks with an entry; 1 if there is none.
   int block = 1;
-  double block_fill = 0;                    ///< share of the positions in these blocks that have an entry
-  std::vector<Offset> histogram_log2 = {};  ///< entry k: entries at 2^k … 2^(k+1) − 1 from the diagonal
+  double block_fill = 0;  ///< share of positions in these blocks with an entry; 0 if `block` is 1
+  std::vector<Offset> histogram_log2 = {};  ///< entry k: number of entries 2ᵏ … 2ᵏ⁺¹ − 1 from the diagonal
 };
 inline constexpr double kFullBlocks = 0.8;
 

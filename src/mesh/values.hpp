@@ -21,7 +21,7 @@ inline std::size_t size_of(const Values& values) {
   return std::visit([](const auto& numbers) { return numbers.size(); }, values);
 }
 
-/// Calls `work` with the list if it holds numbers, and returns the result; for texts, returns `Result()`.
+/// Calls `work` with the values and returns the result if they are numbers; for texts, returns `Result()`.
 template <class OfValues, class Work>
 auto with_numbers(OfValues&& values, const Work& work) {
   using Result = decltype(work(std::get<std::vector<double>>(values)));
@@ -62,13 +62,13 @@ inline bool are_integers(const Values& values) {
   return values.index() > kLastReal && !are_texts(values);
 }
 
-/// Returns whether all numbers fit 32 bits. O(numbers).
+/// Returns whether all numbers fit int32. O(numbers).
 inline bool fit_32_bits(std::span<const std::int64_t> numbers) {
   return std::all_of(numbers.begin(), numbers.end(),
                      [](std::int64_t number) { return std::in_range<std::int32_t>(number); });
 }
 
-/// Returns the number of vertices or cells.
+/// Returns the number of vertices or of cells of a mesh.
 inline Index item_count(const Mesh& mesh, Association association) {
   return association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
 }
@@ -91,14 +91,14 @@ void append_values(Values& values, Values more);
 /// Converts numbers to double; returns nothing for texts. O(values).
 std::vector<double> as_reals(const Values& values);
 
-/// Returns the number that is written for a missing value: NaN, or 0 for integers.
+/// Returns the value that is written for a missing one: NaN, 0 for integers, an empty text.
 template <class Number>
 Number missing_value() {
   if constexpr (std::is_floating_point_v<Number>) return std::numeric_limits<Number>::quiet_NaN();
   return Number{};
 }
 
-/// Returns an empty vector of the number type with that index in Values.
+/// Returns an empty vector of the type with that index in Values.
 inline Values values_of_type(std::size_t type) {
   Values result;
   [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -108,7 +108,7 @@ inline Values values_of_type(std::size_t type) {
   return result;
 }
 
-/// Returns values of the number type with that index: calls `fill` with an empty vector of them.
+/// Returns values of the type with that index, which `fill` adds to an empty vector.
 template <class Fill>
 Values values_of_type(std::size_t type, const Fill& fill) {
   Values values = values_of_type(type);
@@ -116,7 +116,7 @@ Values values_of_type(std::size_t type, const Fill& fill) {
   return values;
 }
 
-/// The same, but does not call `fill` for texts.
+/// Like `values_of_type`, but does not call `fill` for texts.
 template <class Fill>
 Values numbers_of_type(std::size_t type, const Fill& fill) {
   Values values = values_of_type(type);

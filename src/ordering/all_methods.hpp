@@ -55,10 +55,9 @@ Permutation in_fronts(GraphRef graph, const Permutation& order);
 /// from a good start; in small graphs the result is close enough to the Fiedler vector. A piece that is not
 /// connected is ordered component by component.
 ///
-/// `pull` has an entry for each vertex. In the whole order, some of the vertex's neighbours come before this
-/// graph and some come after it; the entry is the number before minus the number after. Each cut
-/// takes the direction that brings vertices nearer to these neighbours. O((n + edges) · log n) time, O(n +
-/// edges) memory; one thread.
+/// For each vertex, `pull` has the number of neighbours that come before this graph in the whole order, minus
+/// the number that come after. Each cut takes the direction that brings vertices nearer to these neighbours.
+/// O((n + edges) · log n) time, O(n + edges) memory; one thread.
 std::vector<Index> smoothed_bisection(CsrGraph graph, std::vector<float> pull);
 
 }  // namespace meshorder

@@ -80,7 +80,7 @@ CoarseArrangement coarsen(const ArrangementGraph& graph, const std::vector<Index
   std::vector<Index> next(first.begin(), first.end() - 1);
   for (const Index v : order) members[next[group_of[v]]++] = v;
 
-  // add up their rows
+  // add up the rows of each group's members
   ArrangementGraph& coarse = result.graph;
   coarse.volumes.assign(count, 0);
   coarse.offsets.reserve(Offset{count} + 1);

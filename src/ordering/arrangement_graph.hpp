@@ -19,8 +19,8 @@ struct ArrangementGraph {
   [[nodiscard]] Offset weight(Offset k) const { return weights.empty() ? 1 : weights[k]; }
 };
 
-/// Returns where the middle of each vertex lies on the line, in half places, if the vertices lie side by side
-/// in `order` (a list of all of them). O(n).
+/// Returns the middle of each vertex on the line, in half places. The vertices lie side by side in `order`, a
+/// list of all vertices. O(n).
 std::vector<Offset> middles(const ArrangementGraph& graph, const std::vector<Index>& order);
 
 /// Returns Σ weight · distance of the middles over all edges, in half places: twice the sum of edge spans if
@@ -30,13 +30,13 @@ Offset total_span(const ArrangementGraph& graph, const std::vector<Index>& order
 /// A graph with fewer vertices, each of which is a group of vertices of a finer graph.
 struct CoarseArrangement {
   ArrangementGraph graph;       ///< its vertices are numbered in the order of their groups' first members
-  std::vector<Index> group_of;  ///< for each vertex of the finer graph
+  std::vector<Index> group_of;  ///< group of each vertex of the finer graph
 };
 
-/// Puts each vertex, in the given order, into the group of a neighbour: the one with the largest ratio of
-/// edge weight to distance on the line. A group has up to eight vertices. Groups hold near and strongly
-/// joined vertices, so that the order of the groups fixes most of the order of the vertices. All edges
-/// between two groups become one, with the sum of their weights. O(n + edges), deterministic.
+/// Puts each vertex, in the given order, into the group of the neighbour with the largest ratio of edge
+/// weight to distance on the line. A group has up to eight vertices. Groups hold near and strongly joined
+/// vertices, so that the order of the groups fixes most of the order of the vertices. All edges between two
+/// groups become one, with the sum of their weights. O(n + edges), deterministic.
 CoarseArrangement coarsen(const ArrangementGraph& graph, const std::vector<Index>& order);
 
 /// Improves an order by local search: takes out each vertex in turn and puts it back where the total span is
@@ -48,7 +48,8 @@ CoarseArrangement coarsen(const ArrangementGraph& graph, const std::vector<Index
 /// number of steps proportional to the vertex's edges.
 ///
 /// Works on chunks of the order, on all threads. Vertices stay in their chunk; each chunk of the next pass
-/// overlaps two of this one. The result does not depend on the number of threads. O(n + edges) a pass.
+/// overlaps two chunks of this pass. The result does not depend on the number of threads. O(n + edges) a
+/// pass.
 Offset improve_by_insertions(const ArrangementGraph& graph, std::vector<Index>& order, int passes);
 
 }  // namespace meshorder

@@ -18,7 +18,6 @@
 
 namespace meshorder {
 
-// The names of workloads.
 template <>
 struct EnumNames<Workload> {
   static constexpr std::string_view kind = "workload";
@@ -43,7 +42,7 @@ namespace {
 /// coordinates. bare: another graph without coordinates.
 enum class Kind : std::uint8_t { lattice, placed, bare };
 
-/// A condition under which a method is chosen; the first rule that fits decides.
+/// A method and the condition under which it is chosen; the first rule that fits decides.
 struct Rule {
   std::span<const Workload> workloads = {};  ///< empty: any
   Index least_vertices = 0;                  ///< smallest number of vertices

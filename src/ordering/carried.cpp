@@ -45,7 +45,7 @@ Index median_rank(std::span<const Index> neighbours, std::span<const Index> rank
   return *middle;
 }
 
-/// Finds a rank for the new vertices in waves: the vertices of a wave have neighbours with a rank.
+/// Finds ranks for the new vertices in waves: each wave ranks those that have neighbours with a rank.
 ///
 /// @param rank_of  rank of each vertex, kUnranked for new vertices; receives the ranks that are found
 std::vector<Insertion> found_places(std::span<const Index> added, const NeighbourRows& rows,

@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-/// The vertices of an update compared with those of the previous update.
+/// How the vertices of an update differ from those of the previous update.
 struct VertexChanges {
   std::vector<Index>
       places;  ///< each vertex's place after the last update, −1 if it is new; empty: nothing changed

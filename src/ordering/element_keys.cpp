@@ -1,5 +1,5 @@
-// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// Element orders by one number that is computed from the ranks of their vertices.
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT Orders of elements by a number that is
+// computed from the ranks of an element's vertices.
 #include "ordering/all_methods.hpp"
 #include "ordering/sorted.hpp"
 
@@ -9,8 +9,8 @@
 namespace meshorder {
 namespace {
 
-/// Returns the elements sorted by `key_of(vertices)`, a value among the new numbers of the vertices; ties by
-/// old number. O(elements · log elements).
+/// Returns the elements sorted by `key_of(vertices)`, a value in the range of the vertices' new numbers; ties
+/// by old number. O(elements · log elements).
 template <class KeyOf>
 Order elements_by_ranks(const ElementInput& input, const KeyOf& key_of) {
   const auto key_of_element = [&](Index e) { return key_of(input.elements[e]); };

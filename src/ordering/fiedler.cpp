@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// Appends the vertices of a component, given in ascending order, sorted by their values, ties by number.
+/// Appends the vertices of a component sorted by their values, ties by number. `component` ascends.
 void append_sorted(const std::vector<Index>& component, const std::vector<double>& values,
                    std::vector<Index>& new_to_old) {
   const Index n = index_size(component);

@@ -23,7 +23,7 @@ constexpr Index kAheadOfPlaces = 4;
 /// would be unpredictable.
 class SectionRenumbering {
  public:
-  /// @param places  maps each place in the old order to the new place, if that is known
+  /// @param places  the new place for each place in the old order; set chunk by chunk
   SectionRenumbering(GraphRef graph, const Permutation& order, Index begin, std::span<Index> places)
       : graph_(graph), order_(order), begin_(begin), places_(places) {}
 
@@ -38,7 +38,7 @@ class SectionRenumbering {
       is_queued_[vertex] = 1;
     };
     for (const auto& [earliest, vertex] : seeds_) enqueue(vertex);
-    Index first = 0;  // all vertices before this one are reached
+    Index first = 0;  // all vertices before this one are in the queue
     for (Index next = 0; next < end - begin;) {
       if (next == queued) {
         enqueue(first++);
@@ -59,7 +59,7 @@ class SectionRenumbering {
     Index found = 0;
     seeds_.clear();
     for (Index place = begin; place < end; ++place) {
-      // prefetches for later places; not a function, since GCC 12 drops its calls as code without effect
+      // prefetches for later places; not in a function: GCC 12 drops calls of it as code without effect
       if (place + kAheadOfOffset < index_size(vertices)) {
         prefetch_offsets(graph_.offsets, vertices.subspan(place + kAheadOfOffset, 1));
         prefetch_rows(graph_.offsets, graph_.neighbours, vertices.subspan(place + kAheadOfRow, 1));
@@ -94,7 +94,7 @@ class SectionRenumbering {
   const Permutation& order_;
   Index begin_;
   std::span<Index> places_;
-  std::vector<Index> earlier_;                  ///< new places of a vertex's neighbours before the chunk
+  std::vector<Index> earlier_;                  ///< old places of a vertex's neighbours before the chunk
   std::vector<std::pair<Index, Index>> seeds_;  ///< earliest neighbour before the chunk, vertex
   std::array<Index, kInChunk + 1> starts_;      ///< where each vertex's row begins in `neighbours_`
   std::vector<Index> neighbours_;

@@ -45,9 +45,8 @@ struct GroupInput {
   std::vector<double> start;  ///< for the eigensolver
 };
 
-/// Returns the graph of one group's vertices among themselves, with their weights, points and start. Unlike
-/// with induced_subgraph, the cost depends only on the size of the group: there may be as many groups as
-/// vertices.
+/// Returns the subgraph of a group's vertices, with their weights, points and start. Unlike that of
+/// induced_subgraph, the cost depends only on the size of the group: there may be as many groups as vertices.
 GroupInput input_of_group(const VertexInput& input, RealView start, const Sorted& sorted, Index group) {
   const Index begin = sorted.starts[group];
   const Index end = sorted.starts[group + 1];

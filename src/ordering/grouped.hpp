@@ -10,7 +10,8 @@
 
 namespace meshorder {
 
-/// Numbers groups by the ranks of their values, 0 … `count` − 1. O(size · log size).
+/// Returns `groups` with the distinct numbers replaced by 0 … `count` − 1, in ascending order. O(size · log
+/// size).
 ///
 /// @param what   "vertices" or "cells", for the message
 /// @param count  receives the number of groups
@@ -26,9 +27,9 @@ std::vector<Index> dense_groups(const IndexView& groups, Index size, const char*
 Order order_graph_in_groups(std::string_view method, const VertexInput& input,
                             std::span<const Index> group_of, Index groups, const OrderOptions& options = {});
 
-/// Orders vertices by the method and the groups of `options`, whose values may be any integers.
+/// Orders vertices by the method, group after group if `options` has groups. Groups may be any integers.
 ///
-/// @throws as `order_graph`, and InvalidArgument for another number of groups
+/// @throws as `order_graph`, and InvalidArgument unless each vertex has a group or none has
 Order order_vertices_by_options(std::string_view method, const VertexInput& input,
                                 const OrderOptions& options);
 

@@ -147,7 +147,7 @@ class InsertionSearch {
   const ArrangementGraph& graph_;
   std::vector<Index>& order_;
   std::vector<Index> place_;
-  // by place, since slides read successive places
+  // indexed by place, because slides read successive places
   std::vector<Index> volume_at_;
   std::vector<Offset> balance_at_;  // weight of edges to later vertices minus that to earlier ones
   std::vector<Offset> weight_at_;   // weight of the edge to the vertex being moved

@@ -18,7 +18,7 @@ constexpr double kTolerated = 1.05;       // largest new figure, as a share of t
 constexpr Index kBeyondCaches = 100'000;  // vertices; on smaller meshes good orders differ by less than 3 %
 constexpr double kNotable = 0.1;  // difference of jump shares that decides: 2 to 4 % of a product's time
 constexpr double kGainOnGpu =
-    0.9;  // largest share of the old sectors: repeats of a kernel differ by a few per cent
+    0.9;  // as kGain, for numbers of sectors: repeats of a kernel differ by a few per cent
 constexpr Index kWarpsToLookAt = 4096;  // warps in a sample; counting more changes results by less than 1 %
 
 std::string with_digits(double number, int digits) {
@@ -36,7 +36,7 @@ std::string sentence(const std::string& what, const std::string& old_figure, std
          new_figure + " in the new one";
 }
 
-/// Returns the stride at which warps of `threads` threads are counted: 1 if they are few.
+/// Returns k if every k-th warp of `threads` threads is to be counted: 1 for few threads.
 Index stride_of_warps(Index threads) { return std::max<Index>(1, threads / kWarp / kWarpsToLookAt); }
 
 /// Returns whether a workload reads vectors along the rows or edges of the graph.

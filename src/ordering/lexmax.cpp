@@ -19,8 +19,8 @@ namespace {
 constexpr Offset kInEntry = 4;  // number of ranks in an Entry
 constexpr Index kPart = 65536;  // elements that a thread takes at a time
 
-/// An element with the largest ranks of its vertices in descending order, then −1 if it has fewer vertices.
-/// Most comparisons need only these ranks, so they are side by side in memory.
+/// An element with the four largest ranks of its vertices in descending order; −1 for missing vertices. Most
+/// comparisons need only these ranks, so they are side by side in memory.
 struct Entry {
   std::array<Index, kInEntry> ranks;
   Index item;  ///< the element

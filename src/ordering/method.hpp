@@ -35,7 +35,7 @@ struct ElementInput {
 };
 
 /// Orders vertices by the method of that name, built in or registered. Built-in methods other than `original`
-/// put vertices without neighbours last, in their old order. Calls `poll`.
+/// (also as the choice of `auto`) put vertices without neighbours last, in their old order. Calls `poll`.
 ///
 /// @throws InvalidArgument for an unknown name (the message lists the known ones), for a geometric method
 ///         without coordinates of all vertices, and for a registered method that returns an order of
@@ -60,7 +60,7 @@ MethodChoice choose_vertex_method(const VertexInput& input, Workload workload);
 /// Returns the element method that measurements favour for that workload. O(1).
 MethodChoice choose_element_method(const ElementInput& input, Workload workload);
 
-/// Returns a registered method of that name, empty if there is none. Thread-safe.
+/// Returns the registered method of that name; an empty function if there is none. Thread-safe.
 VertexMethod registered_vertex_method(std::string_view name);
 ElementMethod registered_element_method(std::string_view name);
 

@@ -195,7 +195,7 @@ NeighbourRows PointNeighbourhood::rows_of(std::span<const Index> vertices) const
 }
 
 Order PointNeighbourhood::order_by(std::string_view method, const OrderOptions& options) {
-  // calls the method itself: order_graph would take all points for isolated vertices
+  // calls the method directly: for order_graph, all points would be isolated vertices
   const std::vector<Offset> offsets(points_.size() + 1);
   const VertexInput input{{offsets, {}}, points_};
   const bool by_morton = method == "morton";

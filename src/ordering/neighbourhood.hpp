@@ -54,7 +54,8 @@ class GraphNeighbourhood : public Neighbourhood {
   const PointsView& points_;
 };
 
-/// The vertices of a mesh, which must outlive this object. Builds the graph only to compute an order.
+/// The vertices of a mesh, which must outlive this object. Builds the graph at the first call of `order_by`
+/// or `is_read_forward`.
 class CellNeighbourhood : public Neighbourhood {
  public:
   CellNeighbourhood(const CellArrays& cells, const PointsView& points) : cells_(cells), points_(points) {}

@@ -25,7 +25,7 @@ void append(std::vector<std::string>& notes, const std::vector<std::string>& mor
   notes.insert(notes.end(), more.begin(), more.end());
 }
 
-/// Returns the points. If the method uses them and they do not fit the graph, adds a note; for `auto`, then
+/// Returns the points. If the method uses points and these do not fit the graph, adds a note, and for `auto`
 /// returns no points.
 PointsView usable_points(const PointsView& points, GraphRef graph, std::string_view method,
                          std::vector<std::string>& notes) {

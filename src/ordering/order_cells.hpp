@@ -21,7 +21,7 @@ std::vector<Index> slot_classes(const CellArrays& cells);
 /// Gives the places of each class to the cells of the class, in the order in which `cells_in_order` lists the
 /// cells.
 ///
-/// @throws InvalidArgument unless there are as many cells as classes
+/// @throws InvalidArgument unless `cells_in_order` and `classes` have the same size
 Permutation permutation_within_classes(std::span<const Index> classes, std::vector<Index>&& cells_in_order);
 
 /// Orders all cells: cells of the highest dimension by the method, the others by `lexmax` (under `original`
@@ -29,7 +29,7 @@ Permutation permutation_within_classes(std::span<const Index> classes, std::vect
 /// stay together, and the groups ascend.
 ///
 /// @param groups  a number for each cell, or none
-/// @throws as `order_incidence`, and InvalidArgument for another number of groups
+/// @throws as `order_incidence`, and InvalidArgument unless `groups` is empty or has a number for each cell
 Order order_cells(std::string_view method, const CellArrays& cells, const Permutation& vertices,
                   const PointsView& points, const IndexView& groups, const OrderOptions& options);
 

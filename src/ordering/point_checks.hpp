@@ -9,7 +9,8 @@
 
 namespace meshorder {
 
-/// Throws InvalidArgument unless there are `count` finite points or none. Calls `poll`. O(points).
+/// Throws InvalidArgument unless there are `count` finite points or none. Does nothing with `Check::none`.
+/// Calls `poll`. O(points).
 void check_finite(const PointsView& points, std::size_t count, Check check);
 
 /// Returns whether neighbours are nearer to each other than random pairs of points, as in a mesh. False

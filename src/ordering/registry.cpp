@@ -106,8 +106,8 @@ void remove(std::uint64_t id) {
   take_out(all.element_methods, id, element_method);
 }
 
-/// Returns the method. If it needs points, the result throws InvalidArgument without the coordinates of all
-/// vertices. `vertices(problem)` returns the number of vertices.
+/// Returns the method. If the method needs points, the result throws InvalidArgument unless all vertices have
+/// coordinates. `vertices(problem)` returns the number of vertices.
 template <class Problem, class Method, class Vertices>
 Method with_points(const MethodInfo& info, Method method, Vertices vertices) {
   if (!info.needs_points || !method) return method;

@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// Writes and reads the numbers of a state.
+/// Collects the bytes of a state's numbers.
 class Bytes {
  public:
   template <class Number>

@@ -11,7 +11,8 @@
 
 namespace meshorder {
 
-/// Sums for a line fitted through the times of steps. k: the number of updates since the last new order.
+/// Sums for a line fitted through the times of steps. k: the number of updates since the last new order; t:
+/// the time of a step.
 struct Observed {
   double count = 0;
   double k = 0;
@@ -26,7 +27,7 @@ struct Observed {
     t += seconds;
     kt += number * seconds;
   }
-  /// Returns by how much each step takes longer than the step before it; 0 if that is not known.
+  /// Returns by how much the time of a step grows with each update; 0 if that is not known.
   [[nodiscard]] double slope() const {
     constexpr double kFewest = 5;
     const double spread = count * kk - k * k;
@@ -46,7 +47,7 @@ struct ReordererState {
   double fresh_seconds = 0;  ///< cost of the last order without a start vector; 0: none
   double warm_seconds = 0;   ///< cost of the last order with a start vector; 0: none
   Observed observed;
-  std::string method;          ///< method of later orders; "auto" if the first was no better
+  std::string method;          ///< method of later orders; "auto" if the first order was no better
   std::vector<double> vector;  ///< start for the next Fiedler vector, indexed by place after the last update
 };
 

@@ -71,7 +71,7 @@ class Bisection {
   }
 
   void add_component(Index start) {
-    // search to a far end, from there to the end farthest from it, and back
+    // search from the start to a far end, from this end to the opposite end, and back
     search(start, mark_);
     search(queue_.back(), ++mark_);
     for (const Index v : queue_) value_[v] = static_cast<float>(distance_[v]);
@@ -129,7 +129,7 @@ class Bisection {
     }
   }
 
-  /// Removes neighbours in the other half of the piece from the row of v, and adds them to its pull.
+  /// Removes neighbours in the other half of the piece from the row of v, and counts them in the pull of v.
   void drop_neighbours_in_other_half(Index v) {
     Offset kept = graph_.offsets[v];
     for (Offset m = kept; m < row_end_[v]; ++m) {

@@ -76,8 +76,9 @@ struct SortByValue {
   }
 };
 
-/// Returns the numbers 0 … n−1 sorted by the places of their values. On all threads; each value is computed
-/// once. O(n log n) at worst, O(n) if values are evenly spread over the places.
+/// Returns the numbers 0 … n−1 sorted by the places of their values, and within a place by `sort`. Runs on
+/// all threads; computes each value once. O(n log n) at worst, O(n) if values are evenly spread over the
+/// places.
 ///
 /// @param places    number of places for values
 /// @param place_of  `place_of(value)` returns the place of a value, 0 … places − 1; a larger value must not

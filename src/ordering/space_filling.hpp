@@ -13,7 +13,7 @@
 
 namespace meshorder {
 
-/// A box along the axes, at first without points. Adding another box extends it to enclose that box.
+/// A box along the axes, at first without points. Adding another box extends this box to enclose both.
 struct Box {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Point low{kInfinity, kInfinity, kInfinity};

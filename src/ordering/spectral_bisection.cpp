@@ -26,7 +26,7 @@ constexpr double kThickness = 0.8;  // least thickness of slabs, see `cut`: less
 struct Piece {
   CsrGraph graph;
   std::vector<Index> names;  ///< the number of each of its vertices in the whole graph
-  std::vector<float> pull;   ///< for each vertex: number of neighbours in earlier pieces − in later pieces
+  std::vector<float> pull;   ///< by vertex: neighbours in earlier pieces minus neighbours in later pieces
 };
 
 /// Returns a component of the graph as a piece. `component` lists its vertices, ascending. `number` has an
@@ -76,8 +76,8 @@ std::vector<Index> along_fiedler_vector(const Piece& piece, std::uint64_t seed) 
   return sequence;
 }
 
-/// Counts for each place of the sequence the vertices before the place that have neighbours after it; returns
-/// the mean over all places. This is the size of the piece's cross-section. At least 1.
+/// Returns the mean front over all places of the sequence: the number of vertices before a place with
+/// neighbours after that place. This is the size of the piece's cross-section. At least 1.
 double mean_front(GraphRef graph, const std::vector<Index>& sequence) {
   std::vector<Index> place(sequence.size());
   for (Index k = 0; k < graph.size(); ++k) place[sequence[k]] = k;
@@ -91,7 +91,7 @@ double mean_front(GraphRef graph, const std::vector<Index>& sequence) {
   return std::max(1.0, sum / graph.size());
 }
 
-/// A sequence cut into slabs of equal size, up to one vertex.
+/// A sequence cut into slabs whose sizes differ by at most one vertex.
 struct Slabs {
   std::vector<Index> sequence;
   Index count = 2;

@@ -9,13 +9,13 @@
 
 namespace meshorder {
 
-/// A partition of the vertices into groups, the vertices of the next coarser graph. The aggregates of a chunk
-/// of rows are numbered together, chunk after chunk.
+/// A partition of a graph's vertices into aggregates, which are the vertices of the next coarser graph. The
+/// aggregates are numbered chunk after chunk of the rows.
 struct Aggregation {
   std::vector<Index> aggregate_of;       ///< n entries in 0 … count−1
   std::vector<Index> first_of_chunk{0};  ///< the first aggregate of each chunk, then the number of aggregates
 
-  Index alone = 0;  ///< number of aggregates of one vertex, without a strong neighbour in its chunk
+  Index alone = 0;  ///< number of aggregates of a single vertex without strong neighbours in its chunk
   std::vector<Index> founders = {};  ///< one for each aggregate
   double strength = 0;               ///< threshold for strong neighbours, see `aggregate`
   std::vector<double> slacks = {};   ///< how much vectors may vary within each aggregate, see `aggregate`
@@ -30,10 +30,10 @@ struct Aggregation {
 /// for any number of threads.
 ///
 /// Every vertex joins its aggregate through one edge, which leads to the founder or to a founding member. The
-/// slack of an aggregate is the largest mass that depends on such an edge, divided by the edge's weight. A
-/// vector of Rayleigh quotient λ is nearly constant on an aggregate if λ · slack is much less than 1.
-/// Otherwise the aggregate may hide a vector: for example, an aggregate of two cliques joined by a bridge has
-/// a large mass that depends on the bridge. See hiding.hpp.
+/// slack of an aggregate is the largest ratio, over these edges, of the mass that depends on an edge to the
+/// edge's weight. A vector of Rayleigh quotient λ is nearly constant on an aggregate if λ · slack is much
+/// less than 1. Otherwise the aggregate may hide a vector: for example, an aggregate of two cliques joined by
+/// a bridge has a large mass that depends on the bridge. See hiding.hpp.
 ///
 /// @param masses  of the vertices; empty if all are 1
 Aggregation aggregate(const Laplacian& laplacian, const RowChunks& chunks, double strength,

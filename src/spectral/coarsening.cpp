@@ -9,7 +9,7 @@
 namespace meshorder {
 namespace {
 
-constexpr double kSmoothing = 2.0 / 3.0;  // 4/3 divided by 2, which bounds the spectral radius of D⁻¹L
+constexpr double kSmoothing = 2.0 / 3.0;  // 4/3 divided by 2, the bound of the spectral radius of D⁻¹L
 
 /// Adds up the entries of a row that have the same column. The object is used for one row after another.
 class RowSum {

@@ -28,7 +28,7 @@ Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggreg
 
 /// The same for some rows of a larger graph. The vertices of these rows have the first numbers.
 ///
-/// @param aggregation  of the rows; `aggregate_of` has the other vertices too
+/// @param aggregation  aggregates of the rows; `aggregate_of` also has entries for the other vertices
 /// @param columns      number of all aggregates; aggregates of the rows come before those of other vertices
 Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggregation& aggregation,
                     Index columns);

@@ -59,7 +59,7 @@ class Search {
   std::vector<std::vector<std::pair<Index, Index>>> claims_;
 };
 
-/// Numbers the component of `start` from order[tail_] on.
+/// Numbers the component of `start`; its vertices go to order[tail_] and the places after it.
 void Search::number_component(Index start) {
   component_start_ = head_ = tail_;
   numbering_.order[tail_++] = start;

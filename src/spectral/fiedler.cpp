@@ -137,7 +137,7 @@ void check_input(GraphRef graph, std::span<const double> weights, RealView start
 }
 
 /// Returns the exponent of the power of two by which weights are multiplied, so that no sum or square of
-/// weights leaves the range of doubles; 0 if no weight is near the ends of that range.
+/// weights leaves the range of doubles; 0 if the largest weight is far from the ends of that range.
 int exponent_of_scale(std::span<const double> weights) {
   constexpr int kOrdinary = 300;
   if (weights.empty()) return 0;

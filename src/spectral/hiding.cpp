@@ -19,7 +19,7 @@ class PartOfGraph {
  public:
   /// @param part_of   the part of each vertex of the graph
   /// @param vertices  the vertices of this part, ascending
-  /// @param local     has a number for each vertex of the graph; the numbers of `vertices` are written
+  /// @param local     an entry for each vertex of the graph; receives the local numbers of `vertices`
   PartOfGraph(const Laplacian& laplacian, std::span<const Index> part_of, std::span<const double> masses,
               std::span<const Index> vertices, std::span<Index> local)
       : laplacian_(laplacian), of_(part_of), masses_(masses), vertices_(vertices), local_(local) {
@@ -51,7 +51,7 @@ class PartOfGraph {
 /// Returns an aggregate's slack, computed as if each joining vertex spread its mass over all its edges to
 /// founding members.
 ///
-/// @param least  weight of a founding member's edge to the founder
+/// @param least  least weight of an edge between the founder and a founding member
 double spread_slack(const PartOfGraph& part, Index founder, double least) {
   std::vector<double> founding_weight(static_cast<std::size_t>(part.size()));
   std::vector<double> hanging(founding_weight.size());
@@ -80,7 +80,7 @@ double spread_slack(const PartOfGraph& part, Index founder, double least) {
 /// Returns whether more than one pivot of a symmetric matrix is negative, or the sign of a pivot is
 /// uncertain.
 ///
-/// @param rows  its lower triangle, `size` entries a row; overwritten
+/// @param rows  the matrix's lower triangle, `size` entries a row; overwritten
 bool has_two_negative_pivots(std::vector<double>& rows, Index size) {
   constexpr double kTooSmall = 1e-12;  // a pivot below this share of the diagonal may have the wrong sign
   const auto row = [&](Index v) { return rows.data() + std::ptrdiff_t{v} * size; };

@@ -7,11 +7,11 @@
 
 namespace meshorder {
 
-constexpr double kDoubtful = 0.25;  ///< share of an eigenvector's norm² that may vary within aggregates
+constexpr double kDoubtful = 0.25;  ///< an aggregate hides nothing if eigenvalue · slack is at most this
 
 /// Returns whether an aggregate may hide a vector whose Rayleigh quotient is smaller than `eigenvalue`:
-/// coarser graphs then do not show it. If false, every such vector is nearly constant on all aggregates: its
-/// part that varies within aggregates has at most half of its squared norm.
+/// coarser graphs then do not show it. If false, every such vector is nearly constant on all aggregates: the
+/// part that varies within aggregates has at most half of the vector's squared norm.
 ///
 /// An aggregate hides nothing in three cases:
 /// - its slack is small, see `aggregate`;
@@ -22,12 +22,12 @@ constexpr double kDoubtful = 0.25;  ///< share of an eigenvector's norm² that m
 ///
 /// O(n + edges + Σ size³) time, summed over the doubtful aggregates; on all threads.
 ///
-/// @param laplacian  columns beyond the rows belong to no aggregate
+/// @param laplacian  columns beyond the rows are ignored
 /// @param masses     of the rows; empty: all 1
 bool may_hide(const Laplacian& laplacian, const Aggregation& aggregation, std::span<const double> masses,
               double eigenvalue);
 
-/// Returns whether L x = μ M x has more than one eigenvalue below `bound`; the first one is 0, of constants.
+/// Returns whether L x = μ M x has more than one eigenvalue below `bound`, counting the 0 of constants.
 /// Decides by the signs of pivots; true if a sign is uncertain. O(n³).
 ///
 /// @param masses  of the vertices; empty: all 1

@@ -22,7 +22,7 @@ struct Level {
   RowChunks chunks;
   std::vector<double> masses;  ///< see `mass`; empty if all are 1
   Aggregation aggregation;     ///< its aggregates are the vertices of the next coarser level
-  SparseRows prolongation;     ///< for smoothed coarsening, from the next coarser level; else empty
+  SparseRows prolongation;     ///< from the next coarser level if coarsening is smoothed; else empty
 
   [[nodiscard]] bool is_smoothed() const { return prolongation.rows() > 0; }
   /// Returns how many vertices of the finest graph v represents.
@@ -39,7 +39,7 @@ struct CycleWorkspace {
 };
 
 /// A hierarchy of ever coarser Laplacians of one connected graph, made by aggregation, with the cycle that
-/// approximates the pseudo-inverse of the finest one.
+/// approximates the pseudo-inverse of the finest Laplacian.
 ///
 /// The first coarsening is plain (piecewise constant prolongation): the largest coarse operator stays sparse.
 /// The later coarsenings are by smoothed aggregation (Vaněk, Mandel, Brezina 1996). Coarsening and cycles use
@@ -51,7 +51,7 @@ class Hierarchy {
   /// Makes a hierarchy for a graph that is itself the result of coarsening: all further coarsenings are
   /// smoothed.
   ///
-  /// @param masses  of its vertices, > 0
+  /// @param masses  masses of the vertices, > 0
   Hierarchy(Laplacian coarse, std::vector<double> masses);
 
   [[nodiscard]] const std::vector<Level>& levels() const noexcept { return levels_; }
@@ -59,11 +59,11 @@ class Hierarchy {
   /// Computes x ≈ L⁺ b on level `level` by one symmetric W-cycle: a Gauss–Seidel sweep forwards, the coarse
   /// correction, and a Gauss–Seidel sweep backwards. The coarse correction comes from two cycles on the next
   /// level; a small coarsest level is solved exactly. Plain coarsening makes L too stiff for smooth vectors,
-  /// so its corrections are made larger (Braess 1995). The columns of b must sum to 0.
+  /// so plain corrections are enlarged (Braess 1995). Each column of b must sum to 0.
   template <int M>
   void cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x, CycleWorkspace<M>& workspace) const;
 
-  /// The same by two cycles (on the coarsest level, one), for the coarse correction of the next finer level.
+  /// The same by two cycles, or by one on the coarsest level: the coarse correction of the next finer level.
   /// Overwrites b.
   template <int M>
   void two_cycles(int level, VectorBlock<M>& b, VectorBlock<M>& x, VectorBlock<M>& second_x,
@@ -89,8 +89,8 @@ class Hierarchy {
 
   /// Returns whether coarser levels may fail to show a vector with a smaller eigenvalue: an aggregate may
   /// hide it (see hiding.hpp), or there is no exact coarsest level. For up to 128 vertices the answer comes
-  /// from pivots. For a finest level of 129 to 1,024 vertices it is always true, because a search then takes
-  /// less than a millisecond.
+  /// from pivots. For a finest level of 129 to 1,024 vertices the answer is always true, because a search
+  /// then takes less than a millisecond.
   [[nodiscard]] bool may_hide(int level, double eigenvalue) const;
 
  private:

@@ -52,7 +52,7 @@ struct SearchSpace {
       : x(std::move(start)), w(x.vectors.size()), p(x.vectors.size()), companions(std::move(fixed)) {}
 };
 
-/// Returns row v of all vectors of the space, or of all their images, as `part` selects; side by side.
+/// Returns row v of all vectors of the space, or of all images, side by side; `part` selects which.
 template <int M, int C, class Part>
 std::array<double, SearchSpace<M, C>::kSize> row(const SearchSpace<M, C>& s, Index v, Part part) {
   std::array<double, SearchSpace<M, C>::kSize> result;
@@ -201,7 +201,7 @@ std::array<double, M> update(SearchSpace<M, C>& s, const Eigen::MatrixXd& coeffi
 }
 
 /// Computes L x anew, because rounding errors accumulate in images that are updated together with x. Then
-/// computes the Rayleigh quotients and r from it. Returns ‖r‖ / ‖x‖ of each column.
+/// computes the Rayleigh quotients and r from L x. Returns ‖r‖ / ‖x‖ of each column.
 template <int M>
 std::array<double, M> refresh(WithImage<M>& x, const EigenProblem& problem, std::array<double, M>& values,
                               VectorBlock<M>& r) {
@@ -277,7 +277,7 @@ LobpcgResult lobpcg(EigenProblem& problem, const LobpcgOptions& options, VectorB
   if constexpr (Companions > 0) prepare(problem, total_mass[0], s.companions);
   LobpcgResult result;
   std::array<double, M> residuals = search();
-  int calm = 0;  // number of successive iterations that hardly changed a Ritz value
+  int calm = 0;  // number of successive iterations that hardly changed any Ritz value
   const auto converged = [&] { return residuals[0] <= options.tolerance * values[0]; };
   const auto settled = [&] {
     for (int m = 0; m < M; ++m) {

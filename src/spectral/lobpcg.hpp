@@ -11,10 +11,10 @@
 namespace meshorder {
 
 struct LobpcgOptions {
-  double tolerance = 0.1;    ///< on ‖L x − λ B x‖ / (λ ‖x‖) of the first column
-  int max_iterations = 500;  ///< the result reports whether the iteration converged
+  double tolerance = 0.1;    ///< convergence limit on ‖L x − λ B x‖ / (λ ‖x‖) of the first column
+  int max_iterations = 500;  ///< limit on the iterations
   TimeLimit limit = {};      ///< ends the iteration, like max_iterations
-  bool until_calm = false;   ///< ends when all columns have settled; ignores the tolerance
+  bool until_calm = false;   ///< ends the iteration when all columns have settled, whatever the tolerance
 };
 
 struct LobpcgResult {
@@ -89,9 +89,9 @@ class LevelProblem : public EigenProblem {
 /// Locally optimal block preconditioned conjugate gradients (Knyazev 2001): each iteration minimises the
 /// Rayleigh quotient over the span of x, the preconditioned residuals, the previous directions, and
 /// `companions`, all kept orthogonal to constants. Companions are rough guesses of the next eigenvectors. A
-/// single column converges slowly if λ₃ is close to λ₂. With a companion, the column can lose its part along
-/// the next eigenvector; that costs far less than a second column. At the end, the columns are sorted by
-/// their eigenvalues, ascending, and ‖x‖_B = 1. If a column of x is constant or depends on other columns, the
+/// single column converges slowly if λ₃ is close to λ₂. A companion removes the column's part along the next
+/// eigenvector, at far less cost than a second column. At the end, the columns are sorted by their
+/// eigenvalues, ascending, and ‖x‖_B = 1. If a column of x is constant or depends on other columns, the
 /// iteration replaces it by other vectors of the search space. O(graph) time for each iteration.
 template <int M, int Companions>
 LobpcgResult lobpcg(EigenProblem& problem, const LobpcgOptions& options, VectorBlock<M>& x,

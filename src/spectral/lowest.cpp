@@ -23,7 +23,7 @@ int find_lower(EigenProblem& problem, double least, const LobpcgOptions& options
 
 LobpcgResult lowest_eigenvector(EigenProblem& problem, const LobpcgOptions& options, std::uint64_t seed,
                                 VectorBlock<1>& x, VectorBlock<1> companion) {
-  constexpr int kRounds = 5;  // each round but the last one finds a lower eigenvalue
+  constexpr int kRounds = 5;  // maximum number of searches for a lower eigenvalue
   // the Rayleigh quotient of x is within the tolerance of an eigenvalue; an eigenvalue that is less than this
   // share of the quotient is therefore a different one
   const double nearly_equal = 1 - std::clamp(options.tolerance, 1e-6, 0.1);

@@ -24,11 +24,11 @@ int find_lower(EigenProblem& problem, double least, const LobpcgOptions& options
 /// A small residual shows that λ is near an eigenvalue, but not near which one: if most eigenvalues are about
 /// equal, as for cliques, even random vectors have a small residual. Coarse graphs find the right eigenvalue
 /// unless an aggregate hides it (see `EigenProblem::may_hide`). If that is possible, `find_lower` searches,
-/// and the iteration continues from its result. The search takes about as long as the iteration; in other
-/// cases the cost is small.
+/// and the iteration continues from its result. The search takes about as long as the iteration; finding that
+/// none is needed costs little.
 ///
 /// @param seed   of the random vectors
-/// @return iterations: the number made on x
+/// @return `iterations` includes those of searches that found a lower eigenvalue
 LobpcgResult lowest_eigenvector(EigenProblem& problem, const LobpcgOptions& options, std::uint64_t seed,
                                 VectorBlock<1>& x, VectorBlock<1> companion);
 

@@ -17,9 +17,9 @@ using StartBlock = VectorBlock<kStartColumns>;
 /// limits their accuracy anyway.
 [[nodiscard]] LobpcgOptions coarse_search(TimeLimit limit);
 
-/// Returns start vectors on the finest graph. They begin as exact eigenvectors of the coarsest graph, or as
-/// random vectors if that graph is too large for a dense solver, and are improved on every graph in between.
-/// O(graph).
+/// Returns start vectors on the finest graph. They begin as exact eigenvectors of the coarsest graph and are
+/// improved on every graph in between. If the coarsest graph is too large for a dense solver, they are
+/// random. O(graph).
 [[nodiscard]] StartBlock nested_start(const Hierarchy& hierarchy, std::uint64_t seed, TimeLimit limit);
 
 /// Sets the columns of a block from `first_column` on to random entries between −1/2 and 1/2.

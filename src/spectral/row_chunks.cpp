@@ -7,7 +7,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kChunks = 16;  // at most 32: a word holds a set of chunks as bits; enough for most desktops
+constexpr Index kChunks = 16;  // enough for most desktops; at most 32: a word holds a set of chunks as bits
 constexpr Index kFewColours = 3;
 
 }  // namespace

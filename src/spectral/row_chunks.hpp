@@ -45,9 +45,8 @@ class RowChunks {
 
   RowChunks() = default;
 
-  /// Cuts the rows of a graph into up to 16 chunks of at least `least_rows` rows, for any number of
-  /// threads. Makes one chunk if so many chunks touch each other that threads would gain nothing.
-  /// O(edges).
+  /// Cuts the rows of a graph into up to 16 chunks of at least `least_rows` rows, the same for any number of
+  /// threads. Makes one chunk if so many chunks touch each other that threads would gain nothing. O(edges).
   explicit RowChunks(const Laplacian& laplacian, Index least_rows = kLeastRows);
 
   /// Returns one chunk of all rows.

@@ -84,7 +84,7 @@ void Communicator::exchange_bytes(const std::byte* sent, const std::vector<Offse
                                   std::size_t size_of_value) const {
   const auto width = static_cast<Offset>(size_of_value);
   std::vector<MPI_Request> requests;
-  // chunks need no number: messages from one rank to another arrive in the order in which they were sent
+  // chunks need no numbers: messages between two ranks arrive in the order in which they are sent
   const auto in_chunks = [&](const std::vector<Offset>& starts, int rank, const auto& start_message) {
     const Offset end = starts[static_cast<std::size_t>(rank) + 1] * width;
     for (Offset at = starts[static_cast<std::size_t>(rank)] * width; at < end; at += chunk_limit_)

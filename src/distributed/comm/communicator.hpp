@@ -31,7 +31,7 @@ class Session {
   Session& operator=(const Session&) = delete;
   Session& operator=(Session&&) = delete;
 
-  /// Ends all processes. Call it if this process cannot go on and others may wait for it.
+  /// Ends all processes. For a process that cannot go on while others may wait for it.
   [[noreturn]] static void abort(int status) noexcept;
 };
 
@@ -56,7 +56,7 @@ struct Parcels {
 };
 
 /// Returns the values sorted into parcels, one for each rank. The values of a rank keep their sequence.
-/// O(values + ranks) time, plus that of the two functions.
+/// O(values + ranks) time, plus the calls of the two functions.
 ///
 /// @param rank_of   returns the rank of value k; called twice for each value
 /// @param value_of  returns value k
@@ -74,11 +74,11 @@ template <class RankOf, class ValueOf>
   return parcels;
 }
 
-/// A group of ranks. Every rank has to call its functions in the same sequence, except `handle`, `rank`,
-/// `size`, `is_root`, `set_chunk_limit` and `chunk_limit`. Sums do not depend on timing.
+/// A group of ranks. All ranks have to call the functions of this class in the same sequence, except
+/// `handle`, `rank`, `size`, `is_root`, `set_chunk_limit` and `chunk_limit`. Sums do not depend on timing.
 class Communicator {
  public:
-  /// Makes a group of all ranks of the session or of an MPI communicator, which it duplicates.
+  /// Makes a group of the ranks of an MPI communicator, which is duplicated; by default, of all ranks.
   explicit Communicator(MPI_Comm ranks = MPI_COMM_WORLD);
   ~Communicator();
   Communicator(const Communicator&) = delete;
@@ -94,7 +94,7 @@ class Communicator {
   /// Returns how many ranks run on this rank's machine, this rank included.
   [[nodiscard]] int ranks_on_this_machine() const;
 
-  /// Sets the maximum size of a message in bytes, 1 … 2^31 − 1: MPI 3 counts bytes by an int.
+  /// Sets the maximum size of a message in bytes, 1 … 2^31 − 1: MPI 3 counts bytes with an int.
   void set_chunk_limit(Offset bytes) noexcept { chunk_limit_ = bytes; }
   [[nodiscard]] Offset chunk_limit() const noexcept { return chunk_limit_; }
 
@@ -127,8 +127,8 @@ class Communicator {
     return exchange(std::span<const T>(own), starts).values;
   }
 
-  /// Returns the values of the root that belong to this rank: rank r gets starts[r] … starts[r + 1] − 1.
-  /// Throws as `exchange`.
+  /// Returns this rank's share of the root's values: rank r gets values starts[r] … starts[r + 1] − 1. Throws
+  /// as `exchange`.
   ///
   /// @param at_root  values of the root; ignored on other ranks
   /// @param starts   ranks + 1 entries, ascending; only the size is used on other ranks
@@ -150,7 +150,7 @@ class Communicator {
     return at_root;
   }
 
-  /// Returns the root's texts, which must not contain zero bytes, on all ranks.
+  /// Returns the root's texts on all ranks. Texts must not contain zero bytes.
   [[nodiscard]] std::vector<std::string> broadcast(const std::vector<std::string>& at_root) const;
 
   /// Returns the values of all ranks, in rank order, on every rank. O(ranks).
@@ -229,9 +229,9 @@ class Communicator {
   Offset chunk_limit_ = Offset{1} << 30;
 };
 
-/// Extends a checksum, which is the same on all ranks, by data of all ranks. The ranks call `add()` one after
-/// another, in rank order, and wait for each other. `add` must not throw. Every rank has to call this
-/// function.
+/// Adds data of all ranks to a checksum that is the same on all ranks. One rank after another, in rank order,
+/// calls `add()`, which adds the rank's own data to `checksum` and must not throw. Every rank has to call
+/// this function.
 template <class Add>
 void add_in_rank_order(const Communicator& communicator, Checksum& checksum, const Add& add) {
   for (int turn = 0; turn < communicator.size(); ++turn) {

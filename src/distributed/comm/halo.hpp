@@ -13,20 +13,21 @@
 
 namespace meshorder::distributed {
 
-/// The numbers whose values this rank needs from their owners. A Halo is set up once and can then fetch any
-/// number of arrays of values.
+/// The numbers whose values this rank needs from their owners. A Halo is set up once and can then fetch many
+/// arrays of values.
 class Halo {
  public:
   /// Every rank has to call it. O(numbers + ranks).
   ///
   /// @param layout   the owners of the numbers
-  /// @param numbers  the numbers that this rank needs, in any order; it may own some, and repeats are allowed
+  /// @param numbers  numbers whose values this rank needs, in any order; its own numbers and repeats are
+  ///                 allowed
   /// @throws as `Communicator::exchange`
   Halo(const Communicator& communicator, const Layout& layout, std::span<const GlobalIndex> numbers);
 
   /// Returns the numbers that this rank needs, ascending, each once.
   [[nodiscard]] const std::vector<GlobalIndex>& numbers() const noexcept { return wanted_.numbers(); }
-  /// Returns the numbers of this rank that each rank needs, rank by rank; a number may occur several times.
+  /// Returns the numbers that the ranks need from this rank, rank by rank; numbers may occur several times.
   [[nodiscard]] const std::vector<GlobalIndex>& asked_of_this_rank() const noexcept { return asked_.values; }
   /// Returns the position of a number in `numbers()`. O(1) or O(log numbers), as `NumberSet`.
   [[nodiscard]] std::size_t position(GlobalIndex number) const { return wanted_.position(number); }
@@ -61,10 +62,10 @@ class Halo {
   const Communicator& communicator_;
   GlobalIndex first_;  ///< first number that this rank owns
   NumberSet wanted_;
-  Parcels<GlobalIndex> asked_;  ///< numbers of this rank that each rank needs
+  Parcels<GlobalIndex> asked_;  ///< numbers that each rank needs from this rank
 };
 
-/// The values of the numbers that a rank owns and of a halo's numbers.
+/// The values of a rank's own numbers and of its halo's numbers.
 template <class T>
 class HaloValues {
  public:

@@ -12,7 +12,7 @@
 namespace meshorder::distributed {
 
 /// Moves rows of values to the ranks that own their new positions ("places"). A RowMover is set up once and
-/// can then move any number of arrays.
+/// can then move many arrays.
 class RowMover {
  public:
   /// Every rank has to call it. O(rows + ranks).
@@ -32,13 +32,14 @@ class RowMover {
 
   /// As above, for rows of different lengths. O(entries + rows).
   ///
-  /// @param rows  freed before the exchange, since the rows sent and received are two more copies
+  /// @param rows  freed before the exchange, because the rows to send and the received rows are two more
+  ///              copies
   [[nodiscard]] Rows moved(Rows rows) const;
 
  private:
   const Communicator& communicator_;
   std::vector<Offset> sent_;    ///< rows of this rank in the sequence in which they are sent, rank by rank
-  std::vector<Offset> starts_;  ///< index in `sent_` of the first row for each rank, then its size
+  std::vector<Offset> starts_;  ///< index in `sent_` of the first row for each rank, then the size of `sent_`
   std::vector<Offset> places_;  ///< position of each received row among this rank's places
 };
 

@@ -19,12 +19,12 @@ class NumberSet {
 
   /// Returns the numbers, ascending.
   [[nodiscard]] const std::vector<GlobalIndex>& numbers() const noexcept { return numbers_; }
-  /// Returns the position of a number of the set in `numbers()`. O(1), or O(log numbers) if they are far
-  /// apart.
+  /// Returns the position of a number of the set in `numbers()`. O(1), or O(log numbers) if the numbers are
+  /// far apart.
   [[nodiscard]] std::size_t position(GlobalIndex number) const;
 
  private:
-  /// A bit for each of the numbers first_ + 64 k … first_ + 64 k + 63.
+  /// Word k of the set: a bit for each of the numbers first_ + 64 k … first_ + 64 k + 63.
   struct Word {
     std::uint64_t bits = 0;
     std::size_t before = 0;  ///< count of the numbers in earlier words

@@ -15,7 +15,7 @@
 /// of an alternative of `Values`.
 namespace meshorder::distributed {
 
-/// Calls `work` with a zero of a number type; does nothing for texts.
+/// Calls `work` with a 0 of the given number type; does nothing for texts.
 template <class Work>
 void with_number_type(std::size_t alternative, const Work& work) {
   std::visit(

@@ -19,7 +19,7 @@ struct Rows {
     return {entries.data() + offsets[static_cast<std::size_t>(row)],
             entries.data() + offsets[static_cast<std::size_t>(row) + 1]};
   }
-  /// Ends the row whose entries were appended.
+  /// Ends a row, after its entries were appended to `entries`.
   void end_row() { offsets.push_back(static_cast<Offset>(entries.size())); }
 
   bool operator==(const Rows&) const = default;
@@ -35,7 +35,8 @@ struct Dispatch {
 /// rows of one rank are in the sequence of its dispatches. Every rank has to call it. O(entries +
 /// dispatches).
 ///
-/// @param rows        freed before the exchange, since the rows sent and received are two more copies
+/// @param rows        freed before the exchange, because the rows to send and the received rows are two more
+///                    copies
 /// @param dispatches  freed before the exchange
 /// @throws as `Communicator::exchange`
 [[nodiscard]] Rows send_rows(const Communicator& communicator, Rows rows, std::vector<Dispatch> dispatches);

@@ -9,7 +9,7 @@
 namespace meshorder::distributed {
 namespace {
 
-constexpr Offset kSamplesPerRank = 64;  // so many that the ranks' shares differ by a few % only
+constexpr Offset kSamplesPerRank = 64;  // enough for shares of the ranks that differ by only a few %
 
 /// Returns the entries at which the ranges of ranks 1, 2, … begin, chosen from samples of all ranks.
 std::vector<SortEntry> splitters(const Communicator& communicator, const std::vector<SortEntry>& sorted) {

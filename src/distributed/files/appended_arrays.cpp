@@ -117,7 +117,7 @@ std::uint64_t AppendedArrays::place_bytes(const vtk::VtuElement& element, const 
 /// Finds the blocks of a compressed array. Before the blocks there are words with these numbers:
 /// - the number of blocks;
 /// - the uncompressed bytes of a block;
-/// - the uncompressed bytes of the last block if they differ;
+/// - the uncompressed bytes of the last block, or 0 if it has as many as the others;
 /// - the compressed bytes of each block.
 ///
 /// Returns the uncompressed size of the array.

@@ -27,7 +27,7 @@ class VtuXml {
 
   [[nodiscard]] const std::string& text() const noexcept { return text_; }
 
-  /// Returns the offsets in the sequence in which the text has them.
+  /// Returns the offsets in the order in which they occur in the text.
   [[nodiscard]] std::vector<Offset> offsets() const;
 
   /// Returns the maximum size of the text with any other offsets, in bytes. The result is the same for a text
@@ -67,7 +67,7 @@ class AppendedArrays {
   /// of the array, in bytes. O(blocks) time.
   ///
   /// @param bounds  receives the first byte of each compressed block, then the end of the last
-  /// @throws InputError for an array beyond the end of the file, and for blocks whose sizes are impossible
+  /// @throws Error for a damaged or truncated array, and for words that exceed the memory limit
   Offset place(const vtk::VtuElement& element, FilePart& part, std::vector<Offset>& bounds);
 
  private:

@@ -44,7 +44,7 @@ std::vector<GlobalIndex> counts_of(const std::string& path) {
   return counts;
 }
 
-/// Adds the notes of all ranks to those of the root, each once.
+/// Adds the notes of all ranks to `notes` at the root, each note once.
 void gather_notes(const Communicator& communicator, const Notes& own, Notes& notes) {
   std::vector<char> text;
   for (const std::string& note : own) {
@@ -64,7 +64,7 @@ void gather_notes(const Communicator& communicator, const Notes& own, Notes& not
   });
 }
 
-/// Notes cells that have a vertex twice, as the reader of whole meshes does.
+/// Adds a note on cells that have a vertex twice, as the reader of whole meshes does.
 void note_degenerate(const Communicator& communicator, const MeshPart& part, Notes& notes) {
   struct DegenerateCells {
     GlobalIndex count = 0;

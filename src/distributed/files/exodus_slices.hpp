@@ -13,16 +13,16 @@
 
 namespace meshorder::distributed {
 
-/// An Exodus II file that all ranks read at once: each rank opens it with libnetcdf, which needs no MPI
-/// support, and reads a range of the nodes, a range of the elements, and the values of every variable for
-/// these.
+/// An Exodus II file that all ranks read at once. Each rank opens the file with libnetcdf, with or without
+/// MPI support, and reads a range of the nodes, a range of the elements, and the values of every variable in
+/// these ranges.
 class ExodusSlices {
  public:
   /// Opens a file; every rank has to call it. Returns nothing in a build without netCDF, and for a file
-  /// - of another format,
+  /// - of another format, or that is not a regular file,
   /// - that is compressed as a whole,
   /// - without vertices or elements,
-  /// - with elements that VTK cannot hold.
+  /// - with elements that VTK cannot hold, or with an element variable that gives VTK's cell types.
   ///
   /// O(size of the header) at the root.
   ///
@@ -32,7 +32,7 @@ class ExodusSlices {
 
   /// Returns 0 and the end of each block of elements.
   [[nodiscard]] const std::vector<GlobalIndex>& block_ends() const noexcept { return block_ends_; }
-  /// Returns whether Nemesis pieces can keep these blocks: there are not too many, and the file is not a
+  /// Returns whether Nemesis pieces can keep these blocks: there are not too many, and the file itself is no
   /// piece.
   [[nodiscard]] bool has_blocks_of_pieces() const noexcept { return has_blocks_of_pieces_; }
 

@@ -30,7 +30,7 @@ bool is_hdf5(const std::string& path) {
 }
 
 #ifdef MESHORDER_HAS_HDF5
-/// Returns the head of a file whose parts are in an HDF5 file; nothing if parts overlap in it.
+/// Returns the head of a file whose parts are in an HDF5 file; nothing if parts overlap or exceed that file.
 std::optional<FileHead> head_of(FileFacts::Kind kind, FileLayout layout, const std::string& path) {
   FileHead head;
   head.path = path;
@@ -44,7 +44,7 @@ std::optional<FileHead> head_of(FileFacts::Kind kind, FileLayout layout, const s
   return head;
 }
 
-/// Returns whether the first of a file's offsets is 0; the part `offsets` begins with the second one.
+/// Returns whether the first of a file's offsets is 0; the part `offsets` begins with the second offset.
 bool begins_at_zero(const std::string& path, const FilePart& offsets) {
   std::vector<std::byte> first(static_cast<std::size_t>(offsets.row_size()));
   const std::size_t got = InputFile(path).read_at(static_cast<std::uint64_t>(offsets.at - offsets.row_size()),

@@ -14,9 +14,10 @@
 
 namespace meshorder::distributed {
 
-/// Facts on a .vtu, .vtkhdf or .xdmf file that all ranks have.
+/// What all ranks know of a .vtu, .vtkhdf or .xdmf file.
 struct FileFacts : FileSizes {
-  /// A .vtkhdf file is an HDF5 file, an .xdmf file names one. In these files no words come before an array.
+  /// A .vtkhdf file is an HDF5 file; an .xdmf file names an HDF5 file. In HDF5 files, no words precede an
+  /// array.
   enum class Kind : std::uint8_t { vtu, vtkhdf, xdmf };
 
   Kind kind = Kind::vtu;
@@ -51,8 +52,8 @@ struct FileHead {
 /// - an .xdmf file: see `xdmf::find_raw`. O(size of the XML + datasets).
 ///
 /// @param ranks  number of ranks that share the memory of uncompressed arrays
-/// @throws InputError for a damaged file: bad XML, counts or shapes that disagree, arrays beyond its end,
-///         blocks whose sizes are impossible, an HDF5 file that is missing or from another run
+/// @throws InputError for a damaged file: bad XML, counts or shapes that disagree, arrays beyond the end of
+///         the file, blocks whose sizes are impossible, an HDF5 file that is missing or from another run
 [[nodiscard]] std::optional<FileHead> read_head(const std::string& path, int ranks);
 
 /// As `read_head`, for .vtu files.

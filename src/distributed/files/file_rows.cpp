@@ -36,7 +36,7 @@ BlockRange blocks_with(const FilePart& array, Offset begin, Offset end) {
   return {block_of(begin), block_of(end - 1) + 1};
 }
 
-/// Returns the first byte in the file of each block that this rank wants, then the end of the last block.
+/// Returns where each block that this rank wants begins in the file, then the end of the last block.
 std::vector<Offset> own_starts(const Communicator& communicator, const std::vector<Offset>& at_root,
                                BlockRange wanted) {
   Parcels<Offset> sent;
@@ -138,7 +138,7 @@ std::vector<std::byte> read_values(const Communicator& communicator, const Share
 Offset write_values(const Communicator& communicator, const SharedFile& file, const VtuEncoding& encoding,
                     Offset at, std::vector<std::byte> values, Offset block) {
   const Layout layout = Layout::of_sizes(communicator.gathered(std::ssize(values)));
-  std::vector<std::uint64_t> words{static_cast<std::uint64_t>(layout.size())};  // at the root
+  std::vector<std::uint64_t> words{static_cast<std::uint64_t>(layout.size())};  // used at the root only
   Offset word_count = 1;
   if (encoding.compressor != VtuEncoding::Compressor::none) {
     const Offset blocks = (layout.size() + block - 1) / block;

@@ -22,8 +22,8 @@ struct PartName {
   const std::string& part;
 };
 
-/// Returns the values that move to this rank's places; `values` has one for each row of this rank. Every rank
-/// has to call it. O(values). Throws as `RowMover::moved`.
+/// Returns the values that move to this rank's places; `values` has a value for each row of this rank. Every
+/// rank has to call it. O(values). Throws as `RowMover::moved`.
 template <class Value>
 [[nodiscard]] std::vector<Value> moved_values(const Communicator& communicator, const RowMover& mover,
                                               const std::vector<Value>& values) {
@@ -58,7 +58,7 @@ template <class Value>
 Offset write_values(const Communicator& communicator, const SharedFile& file, const VtuEncoding& encoding,
                     Offset at, std::vector<std::byte> values, Offset block);
 
-/// Writes an array without words before it; as `write_values`.
+/// As `write_values`, but always raw and without words before the array.
 Offset write_raw(const Communicator& communicator, const SharedFile& file, Offset at,
                  std::span<const std::byte> values);
 

@@ -27,7 +27,7 @@ using Role = FilePart::Role;
 std::optional<FileHead> shared_head(const Communicator& communicator, const std::string& path) {
   std::optional<FileHead> at_root = communicator.at_root([&]() -> std::optional<FileHead> {
     std::error_code code;
-    if (!std::filesystem::is_regular_file(path, code)) return std::nullopt;  // a pipe is read once
+    if (!std::filesystem::is_regular_file(path, code)) return std::nullopt;  // a pipe can be read only once
     return read_head(path, communicator.size());
   });
   const std::vector<FileFacts> facts =

@@ -14,15 +14,15 @@
 
 namespace meshorder::distributed {
 
-/// Returns the head of a file for all ranks; nothing if `read_head` returns nothing. Its blocks, XML, mold
-/// and `files` are at the root only. Every rank has to call it. Rank 0 finds the datasets of HDF5 files with
-/// libhdf5; the other ranks do not need this library.
+/// Returns the head of a file on all ranks; nothing if the file is not regular or `read_head` returns
+/// nothing. Only the root gets the blocks, the XML, the mold and `files`. Every rank has to call it. Rank 0
+/// finds the datasets of HDF5 files with libhdf5; the other ranks do not need this library.
 ///
 /// @throws SharedError as `read_head`
 [[nodiscard]] std::optional<FileHead> shared_head(const Communicator& communicator, const std::string& path);
 
 /// A file that all ranks read at once, array after array; each rank reads its range of the rows. Every rank
-/// has to call all functions; they throw SharedError if a rank cannot read.
+/// has to call each function that reads; it throws SharedError if a rank cannot read.
 ///
 /// Formats: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html, and
 /// "VTKHDF File Format".
@@ -38,13 +38,14 @@ class FileSlices {
 
   /// Reads this rank's points and cells. O(size of the slice).
   ///
-  /// @throws SharedError for coordinates that are not finite, unknown cell types, cells with too few vertices
-  ///         or with vertices that do not exist, and for damaged blocks
+  /// @throws SharedError for coordinates that are not finite, unsupported cell types, offsets that do not
+  ///         ascend to the number of entries, cells with too few vertices or with vertices that do not exist,
+  ///         and damaged blocks
   [[nodiscard]] MeshSlice read() const;
 
   [[nodiscard]] const SharedFile& file() const noexcept { return file_; }
   [[nodiscard]] const FilePart& part(FilePart::Role role) const;
-  /// Returns the ranges of all ranks, without points and cells.
+  /// Returns a slice that has the ranges of all ranks, but no points and cells.
   [[nodiscard]] MeshSlice empty_slice() const;
   /// Returns the bytes of rows begin … end − 1 of a part.
   [[nodiscard]] std::vector<std::byte> rows(const FilePart& part, GlobalIndex begin, GlobalIndex end) const;
@@ -56,8 +57,8 @@ class FileSlices {
  private:
   /// Returns the VTK types of this rank's cells.
   [[nodiscard]] std::vector<int> types() const;
-  /// Reads the offsets of this rank's cells, counted from the first entry of these cells; returns the index
-  /// of that entry in the file.
+  /// Reads the offsets of this rank's cells, relative to the first entry of these cells. Returns the index of
+  /// that entry in the file.
   [[nodiscard]] Offset read_offsets(MeshSlice& slice) const;
 
   const Communicator& communicator_;

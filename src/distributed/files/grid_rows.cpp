@@ -21,7 +21,7 @@ class WholeGrid {
  public:
   WholeGrid(const Mesh& mesh, Notes& notes)
       : context_(mesh, notes, vtk::NamePlace::xml), cells_(context_.cells()) {
-    // the order of the file that `xml` makes
+    // the order in which the file from `xml` has the arrays
     for (const Association association : {Association::vertices, Association::cells}) {
       for (const DataArray* const array : context_.arrays) {
         if (array->association == association) arrays_.push_back(array);
@@ -36,7 +36,7 @@ class WholeGrid {
     for (auto& [text, number] : places_) number = place++;
   }
 
-  /// Returns a .vtu file of one point and one cell with a row of each array.
+  /// Returns a .vtu file of one point and one cell that has one row of each array.
   [[nodiscard]] std::string xml() const {
     std::vector<DataArray> rows;
     for (const DataArray* const array : arrays_) {

@@ -26,22 +26,22 @@ struct GridRows {
   std::function<std::vector<std::byte>(std::size_t k)> rows;
 
   // only at the root
-  std::string xml;     ///< a .vtu file of one piece, of which only the arrays' elements are used
-  std::string fields;  ///< its <FieldData> with all values inline; empty if `xml` has them inline
+  std::string xml;     ///< a .vtu file of one piece; the values of its arrays are not used
+  std::string fields;  ///< <FieldData> of `xml` with all values inline; empty if `xml` has the values inline
   std::vector<std::string> texts;
 };
 
-/// Distributes a mesh that the root has, in its new order; VTK must be able to hold its cells. Every rank has
+/// Distributes a mesh from the root. The mesh is in its new order, and VTK can hold its cells. Every rank has
 /// to call it. O(size of the mesh) at the root.
 ///
 /// @param mesh   at the root, where it must outlive the result; ignored on other ranks
-/// @param notes  receives, at the root, notes on data that VTK's files store in another form
+/// @param notes  receives, at the root, notes on data that .vtu files store in another form
 /// @throws as `Communicator::exchange`
 [[nodiscard]] GridRows scattered_grid(const Communicator& communicator, const Mesh& mesh, Notes& notes);
 
 /// Returns a moved mesh: equal to what `scattered_grid` makes from the whole mesh in its new order. The types
-/// of labels and ids fit the values of all ranks; the marks of a set follow the order of all its members.
-/// Every rank has to call it. O(size of the part).
+/// of labels and ids fit the values of all ranks; the marks of a set follow the order of the set's members on
+/// all ranks. Every rank has to call it. O(size of the part).
 ///
 /// @param communicator  must outlive the result
 /// @param moved  must outlive the result, and have only cells that VTK can hold; its cells are moved out of

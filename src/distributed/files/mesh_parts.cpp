@@ -88,7 +88,7 @@ void MeshParts::find_own(const Mesh& mesh, const std::vector<GlobalIndex>& part_
   vertices_ = vertices_of_parts(mesh, cells_, part_starts);
   parts_of_vertices_ = transposed(vertices_);
   for (Index part = 0; part < parts; ++part) {
-    // move the vertices that belong to the part, a range of numbers, to the front
+    // move the part's own vertices, whose numbers form a range, to the front
     const auto begin = vertices_.vertices.begin() + vertices_.offsets[part];
     const auto end = vertices_.vertices.begin() + vertices_.offsets[static_cast<std::size_t>(part) + 1];
     const auto is_own = [&](Index vertex) { return part_of(vertex, part_starts) == part; };
@@ -97,9 +97,9 @@ void MeshParts::find_own(const Mesh& mesh, const std::vector<GlobalIndex>& part_
   }
 }
 
-/// Adds the parts of other ranks that have a vertex. For each vertex, every rank tells the owner of the
-/// vertex's number which of its own parts have the vertex. If several parts have it, the owner sends their
-/// list to the ranks of these parts.
+/// Adds the parts of other ranks to `parts_of_vertices_`. Every rank sends each of its vertices, with the
+/// parts that have the vertex, to the owner of the vertex. If several parts have a vertex, the owner sends
+/// their list to the ranks of these parts.
 void MeshParts::find_sharing_parts(const Communicator& communicator, const ShareNumbers& numbers) {
   if (communicator.size() == 1) return;
   struct Letter {
@@ -138,7 +138,7 @@ void MeshParts::find_sharing_parts(const Communicator& communicator, const Share
   });
   const Rows received = send_rows(communicator, std::move(shared), std::move(dispatches));
   communicator.together([&] {
-    // the vertices of the rows ascend from row to row
+    // the first entries of the rows, which are the vertices, ascend
     Incidence all;
     all.vertex_count = parts_of_vertices_.vertex_count;
     Offset row = 0;

@@ -12,10 +12,10 @@
 
 namespace meshorder::distributed {
 
-/// The cells and vertices of the parts of a mesh, without ghost cells. A cell is in the part of its largest
-/// vertex. A vertex is in each part whose cells use it, or, if no cell uses it, in the part to which its
-/// number belongs. A rank has only the cells of its own parts, and knows which other parts share their
-/// vertices. Vertices and cells are numbered as in the rank's share of the mesh.
+/// The cells and vertices of the parts of a mesh, without ghost cells. A cell is in the part of its vertex
+/// with the largest number. A vertex is in each part whose cells use it; an unused vertex is in the part to
+/// which its number belongs. A rank has only the cells of its own parts, and knows which other parts share
+/// their vertices. Vertices and cells are numbered as in the rank's share of the mesh.
 class MeshParts {
  public:
   /// Every rank has to call it. O(entries · log parts).
@@ -33,9 +33,9 @@ class MeshParts {
   /// Returns the vertices of a part: first those that belong to the part, then those of other parts. Both
   /// lists ascend, so that the second is grouped by part.
   [[nodiscard]] std::span<const Index> vertices(Index part) const { return vertices_[part]; }
-  /// Returns the parts that have a vertex, on any rank, ascending.
+  /// Returns all parts, of any rank, with a vertex; ascending.
   [[nodiscard]] std::span<const Index> parts_with(Index vertex) const { return parts_of_vertices_[vertex]; }
-  /// Returns the part that has a cell.
+  /// Returns the part of a cell.
   [[nodiscard]] Index part_with(Index cell) const { return part_of_cells_[static_cast<std::size_t>(cell)]; }
 
  private:
@@ -51,19 +51,19 @@ class MeshParts {
 /// Extracts the parts of a mesh, with the arrays, sets and ids of their cells and vertices.
 class PartCutter {
  public:
-  /// The arguments must outlive this object. O(rows of arrays on some vertices or cells + members of sets).
+  /// The arguments must outlive this object. O(vertices + cells + rows of partial arrays + members of sets).
   PartCutter(const Mesh& mesh, const MeshParts& parts);
 
-  /// Returns a part: its vertices and cells in the order of `MeshParts`, without `cell_blocks`, with the
-  /// metadata of the mesh. Keeps sets even if they have no members in the part. Drops an array on only some
-  /// vertices or cells if it has no rows in the part. O(size of the part).
+  /// Returns a part as a mesh with vertices and cells in the order of `MeshParts` and the metadata of the
+  /// whole mesh, but without `cell_blocks`. Keeps sets even if they have no members in the part. Drops an
+  /// array on only some vertices or cells if it has no rows in the part. O(size of the part).
   [[nodiscard]] Mesh cut(Index part);
 
  private:
   void cut_cells(Index part, Mesh& piece) const;
   void cut_data(Index part, Mesh& piece) const;
   void cut_sets(Index part, Mesh& piece) const;
-  /// Returns the positions within the part of these vertices or cells, in their sequence.
+  /// Returns the position of each of these vertices or cells in the part that is being cut.
   [[nodiscard]] std::vector<Index> placed(Association association, std::span<const Index> numbers) const;
 
   const Mesh& mesh_;

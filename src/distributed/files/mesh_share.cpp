@@ -25,7 +25,7 @@ namespace {
 constexpr std::size_t kPlaceInList = 6;
 constexpr std::size_t kId = 8;
 
-/// Returns numbers of a type from their bytes.
+/// Returns the numbers of a type that `bytes` holds.
 Values values_of(const std::vector<std::byte>& bytes, std::size_t type) {
   return numbers_of_type(type, [&]<class Number>(std::vector<Number>& numbers) {
     numbers.resize(bytes.size() / sizeof(Number));
@@ -119,8 +119,8 @@ class ShareMaker {
     }
   }
 
-  /// Takes a number for each vertex or cell of the part; returns the number of each vertex or cell of the
-  /// share.
+  /// Returns the value of each vertex or cell of the share; `numbers` has the value of each vertex or cell of
+  /// the part that this rank has read.
   template <class Number>
   [[nodiscard]] std::vector<Number> fetched(Association of, const std::vector<Number>& numbers,
                                             std::size_t type) const {
@@ -130,7 +130,7 @@ class ShareMaker {
     return communicator_.together([&] { return numbers_of<Number>(own, type); });
   }
 
-  /// Returns the vertices or cells of the share that are in a list of the file, in the sequence of the list.
+  /// Returns the vertices or cells of the share that a list of the file names, in the order of the list.
   ///
   /// @param members  members of the list that are in the part
   /// @param entries  positions of these members in the list, ascending; empty if the sequence does not matter

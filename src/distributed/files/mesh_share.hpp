@@ -10,18 +10,18 @@
 
 namespace meshorder::distributed {
 
-/// The new numbers, in the whole mesh, of the vertices and cells that a rank has.
+/// The new numbers that the vertices and cells of a rank have in the whole mesh.
 struct ShareNumbers {
   Layout layout;                      ///< the owners of the vertices of the whole mesh, for exchanges
   std::vector<GlobalIndex> vertices;  ///< ascending
   std::vector<GlobalIndex> cells;     ///< ascending
 
-  /// Returns the numbers of a mesh if one rank has the whole mesh.
+  /// Returns the numbers on a rank that has the whole mesh.
   [[nodiscard]] static ShareNumbers of_whole(const Mesh& mesh);
 };
 
-/// A rank's share of a mesh that is written in pieces: the cells of its parts, their vertices, the unused
-/// vertices of these parts, and their arrays, sets and ids.
+/// A rank's share of a mesh that is written in pieces: the cells of the rank's parts, the vertices of these
+/// cells, the unused vertices of these parts, and the arrays, sets and ids of all these.
 struct MeshShare {
   /// Vertices and cells are in the order of their numbers. All sets are kept, even without members. An array
   /// on only some vertices or cells is dropped if it has no rows in the share. Rows and members keep the
@@ -33,7 +33,7 @@ struct MeshShare {
 };
 
 /// Returns the share of this rank; its parts are those of `ranks_of_parts`. A cell is in the part of its
-/// largest vertex. Every rank has to call it. O(size of the part + size of the share · log).
+/// vertex with the largest number. Every rank has to call it. O(size of the part + size of the share · log).
 ///
 /// @param part_starts  as in `part_of`
 /// @throws as `Communicator::exchange`

@@ -35,7 +35,7 @@ std::string mold_of(std::vector<DataArray> arrays, vtk::VtkMetadata metadata, bo
   vtk::write_vtu(mold, FilePath("mold.vtu", store), notes);
   std::string text = store.text();
   if (in_order_of_vtk_9) {
-    // the writer sets this version for a mesh with such cells
+    // the writer sets this version for a mesh with higher-order hexahedra
     constexpr std::string_view kVersion = "version=\"1.0\"";
     text.replace(text.find(kVersion, text.find("<VTKFile")), kVersion.size(), "version=\"2.2\"");
   }

@@ -11,7 +11,7 @@
 
 namespace meshorder::distributed {
 
-/// Returns an array with one row of zeros or empty texts; `type`: index in Values.
+/// Returns an array with one row of zeros or empty texts; `type` is the index of an alternative of Values.
 [[nodiscard]] DataArray blank_row(std::string name, Association association, std::size_t type,
                                   Index components, std::vector<std::string> component_names = {});
 

@@ -48,8 +48,8 @@ class NewPlaces {
   /// Takes the position of the first byte after the XML in each file.
   NewPlaces(Offset old_begin, Offset new_begin) : moves_{{old_begin, new_begin}} {}
 
-  /// Adds a move: bytes of the old file from `old_begin` on, up to the next move, are in the new file from
-  /// `new_begin` on. Calls must ascend.
+  /// Adds a move: bytes of the old file from `old_begin` to the next move are in the new file from
+  /// `new_begin` on. Calls must have ascending arguments.
   void add(Offset old_begin, Offset new_begin) { moves_.emplace_back(old_begin, new_begin); }
 
   /// Returns the first byte after the XML in the new file.

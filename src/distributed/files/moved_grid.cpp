@@ -86,7 +86,7 @@ class PartGrid {
     Index components;
   };
 
-  /// Returns the position, from 1 on, of each member of the part among all members of a set; empty if the
+  /// Returns the position, counted from 1, that each of the part's members has in the whole set; empty if the
   /// members of the whole set ascend in the new order.
   [[nodiscard]] std::vector<std::int32_t> ranks_in_set(std::size_t set) const {
     constexpr GlobalIndex kNone = -1;
@@ -158,8 +158,8 @@ class PartGrid {
     }
   }
 
-  /// Returns the mark of each vertex or cell of the part for a set: 0 if it is not a member, else its
-  /// position in the set or 1.
+  /// Returns the mark of each vertex or cell of the part for a set: 0 for a non-member, else the position in
+  /// the set, or 1 if the set ascends.
   [[nodiscard]] std::vector<std::byte> marks_of_set(const Array& array) const {
     const std::vector<std::int32_t>& ranks = set_ranks_[array.number];
     const std::vector<Index>& members = moved_.part().mesh.sets[array.number].members;
@@ -171,7 +171,7 @@ class PartGrid {
 
   const Communicator& communicator_;
   MovedPart& moved_;
-  std::vector<std::vector<std::int32_t>> set_ranks_;  ///< each member's position in its set; empty: all 1
+  std::vector<std::vector<std::int32_t>> set_ranks_;  ///< by set: position of each member; empty: all 1
   std::vector<Array> arrays_;
   std::vector<std::uint8_t> types_;  ///< VTK cell types
 };

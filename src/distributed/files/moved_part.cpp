@@ -29,15 +29,15 @@ struct ArrayForm {
   Index components = 0;
 };
 
-/// Returns the type for an array whose rows have types a and b on two ranks: a rank's reader returns 32-bit
-/// integers if all labels or numbers that it reads fit.
+/// Returns the common type of an array that has types a and b on two ranks. They may differ: a reader returns
+/// 32-bit integers if all labels or numbers that it reads fit.
 std::size_t common_type(std::size_t a, std::size_t b) {
   if (a == b) return a;
   const bool are_integers = (a == kNarrow || a == kWide) && (b == kNarrow || b == kWide);
   return are_integers ? kWide : kReal;
 }
 
-/// Converts an array to a type and to a number of components, which is at least its present number.
+/// Converts an array to a type and to at least as many components as now; new entries are missing values.
 void give_form(DataArray& array, const ArrayForm& form) {
   if (array.values.index() == form.type && array.components == form.components) return;
   Values result = values_of_type(form.type);
@@ -84,8 +84,8 @@ const std::vector<std::int64_t>* MovedPart::ids(Association association) const {
   return association == Association::vertices ? &part_.mesh.vertex_ids : &part_.mesh.cell_ids;
 }
 
-/// Returns the new place of each cell of the part. `in_order` is this rank's range of a list of all cells in
-/// their new sequence, within blocks or dimensions.
+/// Returns the new place of each cell of the part, within the places of its block or dimension. `in_order` is
+/// this rank's range of the list of all cells in their new order.
 std::vector<GlobalIndex> MovedPart::places_of_cells(const std::vector<GlobalIndex>& in_order) const {
   if (!block_ends_.empty()) return places_by_block(communicator_, cells_.layout, block_ends_, in_order);
   MeshSlice slice;

@@ -19,8 +19,8 @@
 namespace meshorder::distributed {
 
 /// A mesh of which each rank has read a part, and the new places of its vertices and cells. Each rank owns a
-/// range of the new places. Array types fit all ranks, and ids are sorted anew, as if one rank moved
-/// the whole mesh.
+/// range of the new places. Each array has one type on all ranks, and ids are sorted anew, as if one rank
+/// moved the whole mesh.
 class MovedPart {
  public:
   /// Every rank has to call it. O(size of the part).
@@ -43,8 +43,8 @@ class MovedPart {
   [[nodiscard]] const std::vector<GlobalIndex>& new_places(Association association) const {
     return entities(association).places;
   }
-  /// Returns the file's ids of the vertices or cells of the part, in their old order; null if the ids are 1,
-  /// 2, … or not unique.
+  /// Returns the file's ids of the vertices or cells of the part, in their old order; null if there are none,
+  /// or if they are 1, 2, … or not unique.
   [[nodiscard]] const std::vector<std::int64_t>* ids(Association association) const;
 
   /// Returns the points and cells in this rank's range of new places, with the node order of a Mesh. Every
@@ -74,7 +74,7 @@ class MovedPart {
     std::vector<GlobalIndex> places;  ///< new place of each vertex or cell of the part
     std::optional<RowMover> mover;
     bool has_ids = false;
-    std::optional<RowMover> ids_mover;  ///< moves ids to their new places
+    std::optional<RowMover> ids_mover;  ///< moves ids to their new places; none if ids stay
   };
 
   [[nodiscard]] const Entities& entities(Association association) const {

@@ -45,8 +45,8 @@ constexpr std::string_view kMaker = "meshorder";
 
 // ---- the whole mesh as an Exodus II file
 
-/// Returns whether the metadata name all sets of the mesh, and the mesh has all sets and arrays that they
-/// name.
+/// Returns whether the metadata name all sets of the mesh, and the mesh has all sets and arrays that the
+/// metadata name.
 bool knows_all(const Mesh& mesh, const ExodusMetadata& metadata) {
   const NamedParts parts(mesh);
   const auto has_array = [&](const std::string& name) {
@@ -73,7 +73,8 @@ bool knows_all(const Mesh& mesh, const ExodusMetadata& metadata) {
 
 // ---- data that only pieces have
 
-/// Adds integers along a dimension, or one integer if `dimension` is empty. Adds nothing without values.
+/// Adds a variable: integers along a dimension, or one integer if `dimension` is empty. Adds nothing if there
+/// are no values.
 void add_integers(ExodusMetadata& metadata, std::string_view name, std::string_view dimension,
                   const std::vector<std::int64_t>& values) {
   if (values.empty()) return;
@@ -90,8 +91,8 @@ void add_integers(ExodusMetadata& metadata, std::string_view name, std::string_v
 
 constexpr std::string_view kFiles = "num_procs_file";
 
-/// Adds communication maps of nodes ("n") or elements ("e"), one for each other part that shares any. A map's
-/// id is the number of that part.
+/// Adds communication maps of nodes ("n") or elements ("e"), one for each other part that shares nodes or
+/// elements. A map's id is the other part's number.
 void add_maps(ExodusMetadata& metadata, const std::string& of,
               const std::map<Index, std::vector<std::int64_t>>& maps) {
   std::vector<std::int64_t> ids;
@@ -138,7 +139,7 @@ std::vector<std::int64_t> counts_of_sets(const Mesh& mesh) {
 /// Returns the Exodus II side number of a facet of an element.
 ///
 /// @param facet  index in `facets(shape, …)`
-/// @param type   element type of its block
+/// @param type   element type of the element's block
 int side_of_facet(Shape shape, int facet, int coordinates, std::string_view type) {
   constexpr std::array<int, 5> kPyramid{5, 1, 2, 3, 4};
   constexpr std::array<int, 5> kWedge{4, 5, 1, 2, 3};
@@ -193,7 +194,7 @@ Blocks blocks_of(const ExodusMetadata& metadata, const std::vector<GlobalIndex>&
 struct OrderedMesh {
   const Mesh& mesh;  ///< has Exodus II metadata
   const ShareNumbers& numbers;
-  const std::vector<GlobalIndex>& element_numbers;  ///< from 0: number of each cell in the whole file
+  const std::vector<GlobalIndex>& element_numbers;  ///< number of each cell in the whole file, from 0
   Blocks blocks;                                    ///< blocks of the whole mesh
   std::vector<std::int64_t> set_counts;             ///< sizes of the sets of the whole mesh
   bool has_vertex_ids;
@@ -205,7 +206,7 @@ class NemesisPieces {
  public:
   /// Finds the parts and their borders. Every rank has to call it.
   ///
-  /// @param source       its referents must outlive this object
+  /// @param source       the objects to which it refers must outlive this object
   /// @param part_starts  as in `part_of`
   NemesisPieces(const Communicator& communicator, OrderedMesh source,
                 const std::vector<GlobalIndex>& part_starts)
@@ -319,7 +320,8 @@ class NemesisPieces {
            source_.element_numbers);
   }
 
-  /// Returns the metadata of a piece: those of the whole mesh, without arrays that have no rows in the piece.
+  /// Returns the metadata of a piece: those of the whole mesh, without arrays that have no rows in the piece,
+  /// and those that only pieces have.
   [[nodiscard]] ExodusMetadata metadata_of(const Mesh& piece) const {
     ExodusMetadata metadata = metadata_;
     const auto has = [&](const std::string& array) {
@@ -418,7 +420,7 @@ Held held(const Mesh& mesh, Notes& notes) {
   std::vector<GlobalIndex> given_cells;
   {
     Mesh arranged = mesh;
-    arranged.format.clear();  // its cells may be in the order of another file
+    arranged.format.clear();  // its cells may be arranged for another format
     const Permutation places = arrange_cells(arranged, format_named("exodus"))
                                    .value_or(Permutation::identity(arranged.cell_count()));
     given_cells.assign(places.new_to_old().begin(), places.new_to_old().end());

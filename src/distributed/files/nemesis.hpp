@@ -14,9 +14,10 @@
 namespace meshorder::distributed {
 
 /// Writes the parts of a mesh as Nemesis files; one rank has the whole mesh. Nemesis files are Exodus II
-/// files that also hold the numbers in the whole mesh, and the vertices and facets shared with other parts. A
-/// mesh that did not come from an Exodus II file, or is not in the order of such a file, is first written to
-/// memory as an Exodus II file and read from there. O(size of the mesh · log) time.
+/// files that also hold the numbers that nodes and elements have in the whole mesh, and the vertices and
+/// facets shared with other parts. A mesh that did not come from an Exodus II file, or is not in the order of
+/// such a file, is first written to memory as an Exodus II file and read from there. O(size of the mesh ·
+/// log) time.
 ///
 /// Format: Hennigan, Shadid, "NEMESIS I: A Set of Functions for Describing Unstructured Finite-Element Data
 /// on Parallel Computers" (Sandia, 1998), and the names of dimensions and variables in exodusII_int.h of
@@ -28,7 +29,8 @@ namespace meshorder::distributed {
 /// @param names        names of the files in messages
 /// @param notes        receives notes on data that Exodus II stores in another form
 /// @return number of vertices of all pieces minus that of the mesh: vertices on borders are in several pieces
-/// @throws InputError if a file cannot be written; Unavailable in a build without netCDF
+/// @throws SharedError if a file cannot be written; TooLarge for more than 10,000 blocks; Unavailable in a
+///         build without netCDF
 GlobalIndex write_nemesis_pieces(const Mesh& mesh, const std::vector<GlobalIndex>& part_starts,
                                  const std::vector<std::string>& paths, const std::vector<std::string>& names,
                                  Notes& notes);

@@ -13,7 +13,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// A facet that more than one part may have, to be sent to the owner of its largest corner.
+/// A facet that more than one part may have, to be sent to the owner of the corner with the largest number.
 struct Candidate {
   std::array<GlobalIndex, 4> corners;  ///< descending; −1 after the last
   GlobalIndex cell;
@@ -31,7 +31,7 @@ struct Match {
   int facet;
 };
 
-/// Returns whether another part has all of these vertices.
+/// Returns whether several parts have all vertices at these positions of a cell.
 bool is_shared(const MeshParts& parts, std::span<const Index> cell, const std::vector<int>& positions) {
   const auto first = parts.parts_with(cell[positions.front()]);
   if (first.size() < 2) return false;

@@ -55,7 +55,7 @@ struct CellOfPiece {
   Offset row;
 };
 
-/// Sorts the cells of the part first, then the others by their parts; stable.
+/// Sorts cells by their parts, those of `part` first; stable.
 void sort_own_first(std::vector<CellOfPiece>& cells, Index part) {
   std::stable_sort(cells.begin(), cells.end(), [&](const CellOfPiece& a, const CellOfPiece& b) {
     if ((a.part == part) != (b.part == part)) return a.part == part;
@@ -63,7 +63,8 @@ void sort_own_first(std::vector<CellOfPiece>& cells, Index part) {
   });
 }
 
-/// Makes a piece from its cells and the vertices begin … end − 1; a row has a cell's number and vertices.
+/// Returns the piece of a part with these cells; the part's own vertices are begin … end − 1. A row has a
+/// cell's number and vertices.
 PieceContents piece_of(Index part, GlobalIndex begin, GlobalIndex end, const Rows& rows,
                        const std::vector<CellOfPiece>& cells) {
   PieceContents piece;

@@ -45,11 +45,12 @@ std::vector<T> sent_to_ranks(const Communicator& communicator, const std::vector
       .values;
 }
 
-/// Finds the contents of the pieces of this rank's parts. A cell is in the part of its largest vertex, and is
-/// a ghost in the parts of its other vertices. Every rank has to call it. O(entries · log parts).
+/// Finds the contents of the pieces of this rank's parts. A cell is in the part of its vertex with the
+/// largest number, and is a ghost in the parts of its other vertices. Every rank has to call it. O(entries ·
+/// log parts).
 ///
 /// @param vertex_count   number of vertices of the whole mesh
-/// @param cells          the owners of the cells, by new numbers
+/// @param cells          the owners of the cells' new numbers
 /// @param cell_vertices  new numbers of the vertices of each cell of this rank, at least one
 /// @param part_starts    first new number of each part, then the end of the last part
 /// @param with_ghosts    whether a piece has the cells of other parts that use vertices of its part

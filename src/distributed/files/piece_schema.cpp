@@ -62,7 +62,7 @@ PieceArray added(Association association, Source source, std::string_view type, 
           {}};
 }
 
-/// Returns the k-th array of the mesh, which is in a section of its file, as an array of the pieces.
+/// Returns the array of the pieces for the k-th array of the mesh's file, an element of the given section.
 PieceArray taken(const vtk::VtuDocument& file, const vtk::VtuElement& element, std::size_t section,
                  std::size_t k) {
   constexpr std::array<std::string_view, 5> kOfValues{"format", "offset", "RangeMin", "RangeMax",

@@ -18,8 +18,8 @@ struct VtuElement;
 namespace meshorder::distributed {
 
 /// An array of the pieces: a part whose first byte in each piece is not known yet. If the source is `rows` or
-/// `texts`, `number` is its index among the arrays of the mesh's file. If it is `texts`, `type` is the type
-/// of positions in the list of texts.
+/// `texts`, `number` is the array's index in the mesh's file. For `texts`, `type` is the type of positions in
+/// the list of texts.
 struct PieceArray : FilePart {
   enum class Source : std::uint8_t {
     rows,          ///< an array of numbers of the mesh
@@ -38,7 +38,7 @@ struct PieceArray : FilePart {
   [[nodiscard]] bool is_on_vertices() const { return association == Association::vertices; }
 };
 
-/// The properties that all pieces of a mesh have in common, made from the XML of its file.
+/// The properties that all pieces of a mesh have in common, made from the XML of the mesh's file.
 class PieceSchema {
  public:
   /// @param xml     text of a .vtu file of one piece, as in `GridRows`
@@ -48,7 +48,7 @@ class PieceSchema {
 
   /// Returns the arrays in the order in which a piece has them.
   [[nodiscard]] const std::vector<PieceArray>& arrays() const noexcept { return arrays_; }
-  /// Returns the bytes of the word before an array, which holds the array's size: 4 or 8.
+  /// Returns the number of bytes, 4 or 8, in the word that precedes an array and holds the array's size.
   [[nodiscard]] Offset word() const noexcept { return word_; }
   /// Returns the special roles (such as scalars or vectors) that arrays have in the pieces.
   [[nodiscard]] const std::vector<vtk::ArrayRole>& roles() const noexcept { return roles_; }
@@ -65,7 +65,7 @@ class PieceSchema {
                                  const std::vector<Offset>& sizes) const;
   /// Returns a .vtu file of the fields, without a piece.
   [[nodiscard]] std::string fields_alone() const;
-  /// Returns the file that names the pieces.
+  /// Returns the text of the .pvtu file that names the pieces.
   [[nodiscard]] std::string index(const std::vector<std::string>& files) const;
 
   static constexpr std::string_view kEnd = "\n  </AppendedData>\n</VTKFile>\n";

@@ -45,7 +45,7 @@ std::vector<std::byte> rows_of(const std::vector<std::byte>& rows, Offset width,
   return result;
 }
 
-/// Returns the texts at these positions of the list, each followed by a zero.
+/// Returns the texts at these positions of the list, each followed by a zero byte.
 std::vector<std::byte> spelt_out(const std::vector<std::byte>& places,
                                  const std::vector<std::string>& texts) {
   std::vector<std::byte> result;
@@ -254,7 +254,7 @@ namespace {
 /// Number type of connectivity and offsets, the same as in VTK's own writer.
 constexpr std::uint8_t kInt64 = 8;
 
-/// Returns the arrays of the pieces that VTKHDF can hold, with their rows in all partitions.
+/// Returns the arrays of the pieces that VTKHDF can hold, with the sum of their rows over all partitions.
 std::vector<PieceArray> arrays_in_vtkhdf(const PieceSchema& schema,
                                          const std::vector<vtkhdf::Partition>& partitions) {
   std::vector<PieceArray> arrays;
@@ -272,7 +272,7 @@ std::vector<PieceArray> arrays_in_vtkhdf(const PieceSchema& schema,
   return arrays;
 }
 
-/// Throws InputError if there are higher-order hexahedra whose node order is that of VTK before version 9.
+/// Throws SharedError for higher-order hexahedra with the node order of VTK before version 9.
 void refuse_old_hexahedra(const Communicator& communicator, const GridRows& grid, const PieceSchema& schema,
                           const std::string& name) {
   if (schema.has_order_of_vtk_9()) return;

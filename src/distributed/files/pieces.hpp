@@ -13,7 +13,7 @@ namespace meshorder::distributed {
 
 /// Properties of the written pieces.
 struct PiecesReport {
-  GlobalIndex ghost_vertices = 0;  ///< sum over all pieces; also for cells
+  GlobalIndex ghost_vertices = 0;  ///< summed over all pieces, like `ghost_cells`
   GlobalIndex ghost_cells = 0;
   Notes notes;  ///< at the root: arrays that have another name in the pieces
 };

@@ -15,8 +15,8 @@
 namespace meshorder::distributed {
 namespace {
 
-// Ranks use independent calls, not collective ones: their bytes are contiguous, and MPI_File_write_at_all of
-// Open MPI 4.1.4 does not report a full disk.
+// Ranks use independent calls, not collective ones: the bytes of a rank are contiguous, and
+// MPI_File_write_at_all of Open MPI 4.1.4 does not report a full disk.
 
 std::string words_of_mpi(int fault) {
   std::array<char, MPI_MAX_ERROR_STRING> text{};

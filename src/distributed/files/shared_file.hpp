@@ -28,12 +28,12 @@ class SharedFile {
   SharedFile& operator=(const SharedFile&) = delete;
   SharedFile& operator=(SharedFile&&) = delete;
 
-  /// Fills `bytes`, of any size on each rank, from byte `at` of the file on. O(bytes).
+  /// Reads the file from byte `at` on into `bytes`; each rank has its own place and size. O(bytes).
   ///
   /// @throws SharedError if a rank cannot read all of its bytes
   void read(Offset at, std::span<std::byte> bytes) const;
 
-  /// Writes `bytes`, of any size on each rank, from byte `at` of the file on. O(bytes).
+  /// Writes `bytes` to the file from byte `at` on; each rank has its own place and size. O(bytes).
   ///
   /// @throws SharedError if a rank cannot write, as on a full disk
   void write(Offset at, std::span<const std::byte> bytes) const;
@@ -44,7 +44,7 @@ class SharedFile {
   void close();
 
  private:
-  /// Texts for messages on a call that fails, and on a call that moves too few bytes.
+  /// Texts of the messages on a call that fails, and on a call that transfers too few bytes.
   struct Words {
     std::string_view fault;
     std::string_view too_short;  ///< text before the number of the byte where the transfer should have ended

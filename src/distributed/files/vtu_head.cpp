@@ -29,7 +29,8 @@ constexpr Offset kMost = std::numeric_limits<Offset>::max();
 constexpr Offset kMostComponents = Offset{1} << 24;
 constexpr std::string_view kAppended = "<AppendedData";
 
-/// Returns the file up to the underscore before its appended data; nothing if it has no appended data.
+/// Returns the file up to and including the underscore before its appended data; empty if there are no
+/// appended data, or if that text is longer than 32 MiB.
 std::string head_of(const FilePath& path) {
   for (std::size_t most = std::size_t{1} << 16; most <= kLongestHead; most *= 8) {
     const std::string text = path.read_first(most);

@@ -9,8 +9,8 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Returns the graph without the edges between pieces. A piece has the vertices of parts that are not
-/// yet separated; its number is that of the first of these parts.
+/// Returns the graph without the edges between pieces. A piece has the vertices of parts that are not yet
+/// separated; the number of the first of these parts is the piece's number.
 GlobalGraph within_pieces(const GlobalGraph& graph, const HaloValues<Index>& piece_of) {
   GlobalGraph within{graph.layout, {}};
   for (Offset row = 0; row < graph.rows.size(); ++row) {
@@ -57,7 +57,7 @@ std::vector<Index> bisected(const Communicator& communicator, const GlobalGraph&
   const bool is_weighted = communicator.sum(static_cast<GlobalIndex>(weights.size())) > 0;
   const std::vector<GlobalIndex> of_vertices = is_weighted ? weights : std::vector<GlobalIndex>(own_count, 1);
   std::vector<Index> piece_of(own_count, 0);
-  // by part: the number of parts of the piece that begins with this part; 0 if no piece does
+  // for each part: the number of parts in the piece that begins with this part; 0 if there is no such piece
   std::vector<Index> parts_of(static_cast<std::size_t>(parts), 0);
   parts_of[0] = parts;
   while (*std::max_element(parts_of.begin(), parts_of.end()) > 1) {
@@ -65,7 +65,7 @@ std::vector<Index> bisected(const Communicator& communicator, const GlobalGraph&
     const GlobalGraph within = communicator.together([&] { return within_pieces(graph, pieces); });
     const std::vector<GlobalIndex> numbers =
         fiedler_order(communicator, within, halo, number_in_file, options).new_numbers;
-    // for each new number, piece and weight of the vertex: in a piece, vertices follow its Fiedler vector
+    // piece and weight of the vertex with each new number; in a piece, new numbers follow the Fiedler vector
     std::vector<Index> halves = delivered<Index>(communicator, graph.layout, numbers, pieces.own(), Index{0});
     const std::vector<GlobalIndex> in_order =
         delivered<GlobalIndex>(communicator, graph.layout, numbers, of_vertices, GlobalIndex{0});

@@ -12,8 +12,8 @@ namespace meshorder::distributed {
 
 /// Cuts a graph into parts by recursive spectral bisection (Simon 1991: Partitioning of unstructured problems
 /// for parallel processing). Each round cuts every piece in two by the order of its Fiedler vector, until
-/// there are enough parts. One call orders all pieces of a round: they are components of the graph without
-/// the edges between pieces. A round increases the difference of the parts' weights by one vertex's weight at
+/// there are enough parts. One call of `fiedler_order` orders all pieces of a round, in the graph without the
+/// edges between pieces. A round increases the difference of the parts' weights by one vertex's weight at
 /// most. Returns the same parts for the same graph on the same number of ranks. Every rank has to call it.
 /// O(log parts) Fiedler vectors.
 ///

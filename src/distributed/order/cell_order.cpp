@@ -38,8 +38,8 @@ NumberSet vertices_in(const Rows& rows) {
   return NumberSet(vertices);
 }
 
-/// Returns the numbers of cells in rows of `with_numbers`, sorted by `lexmax`. The cells' numbers must
-/// ascend. The vertices of these rows are renumbered 0, 1, …, in the same sequence.
+/// Returns the cells' numbers from rows of `with_numbers`, sorted by `lexmax`. The numbers must ascend.
+/// Renumbers the vertices of these rows 0, 1, … in the same sequence.
 std::vector<GlobalIndex> sorted_by_lexmax(Rows rows) {
   Incidence cells;
   std::vector<GlobalIndex> numbers;
@@ -148,7 +148,7 @@ std::vector<GlobalIndex> places_by_block(const Communicator& communicator, const
     for (const GlobalIndex cell : in_order) ++result[block_of(cell)];
     return result;
   });
-  // where each rank begins to fill each block
+  // for each rank and block: the first place that the rank fills in the block
   std::vector<GlobalIndex> next = communicator.gathered_at_root(counts);
   communicator.at_root([&] {
     std::vector<GlobalIndex> free(block_ends.begin(), block_ends.end() - 1);

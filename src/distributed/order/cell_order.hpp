@@ -18,26 +18,26 @@ namespace meshorder::distributed {
 /// @param cell_vertices  new numbers of each cell's vertices, at least one; freed before the exchange
 /// @param vertices       layout of the new numbers: the owner of a cell's largest number sorts the cell
 /// @return this rank's range of the cells' numbers in their new order; ranges follow in rank order
-/// @throws as `Communicator::exchange`; SharedError if a rank gets more than 2,147,483,647 cells
+/// @throws as `Communicator::exchange`; SharedError if a rank gets more than 2,147,483,647 cells or vertices
 [[nodiscard]] std::vector<GlobalIndex> cells_by_lexmax(const Communicator& communicator, const Layout& cells,
                                                        Rows cell_vertices, const Layout& vertices);
 
 /// Returns the indices, from 0 on, of this rank's cells, sorted by `lexmax` among these cells alone.
 ///
-/// @throws TooLarge for more than 2,147,483,647 cells
+/// @throws TooLarge for more than 2,147,483,647 cells or vertices
 [[nodiscard]] std::vector<GlobalIndex> own_cells_by_lexmax(const Rows& cell_vertices);
 
-/// Returns the new place of each cell of a slice. The cells of each dimension share the places that cells of
-/// this dimension have in the file, in the sequence of `in_order`, which is this rank's range of the order of
-/// all cells. Every rank has to call it. O(cells).
+/// Returns the new place of each cell of a slice. The cells of each dimension fill the places of this
+/// dimension in the file in the sequence of `in_order`: this rank's range of all cells in their new order.
+/// Every rank has to call it. O(cells).
 ///
 /// @throws as `Communicator::exchange`
 [[nodiscard]] std::vector<GlobalIndex> places_by_dimension(const Communicator& communicator,
                                                            const MeshSlice& slice,
                                                            const std::vector<GlobalIndex>& in_order);
 
-/// Returns the new place of each cell of this rank if cells stay in their blocks: the cells of a block share
-/// the places of the block, in the sequence of `in_order`. Every rank has to call it. O(cells · log blocks),
+/// Returns the new place of each cell of this rank if cells stay in their blocks: the cells of a block fill
+/// the places of the block in the sequence of `in_order`. Every rank has to call it. O(cells · log blocks),
 /// O(blocks · ranks) at the root.
 ///
 /// @param cells       the owners of the cells

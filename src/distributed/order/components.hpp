@@ -13,7 +13,7 @@ namespace meshorder::distributed {
 /// A connected component of a graph, and the rank that computes its Fiedler vector.
 struct Component {
   GlobalIndex place;  ///< position by size, from 0 for the largest; ties by the smallest vertex
-  GlobalIndex start;  ///< number of vertices of the components of lower `place`
+  GlobalIndex start;  ///< number of vertices in components of lower `place`
   GlobalIndex size;   ///< number of vertices, ≥ 1
   int solver;         ///< the only rank that solves the component, or `kAllRanks`
 };

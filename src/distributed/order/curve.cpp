@@ -16,7 +16,7 @@ namespace {
 /// Key of unused vertices, larger than the keys of used ones.
 constexpr std::uint64_t kUnused = std::numeric_limits<std::uint64_t>::max();
 
-/// Returns the lattice of the bounding box of all ranks' used points.
+/// Returns the lattice on the box around the used points of all ranks.
 Lattice lattice_of(const Communicator& communicator, const std::vector<Point>& points,
                    const std::vector<char>& used) {
   Box box;

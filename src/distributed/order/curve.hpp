@@ -14,7 +14,7 @@ namespace meshorder::distributed {
 /// the same on any number of ranks.
 struct Curve {
   Layout layout;                            ///< the owners of the numbers of used vertices, in equal shares
-  std::vector<GlobalIndex> number_of;       ///< number along the curve of each vertex of the slice
+  std::vector<GlobalIndex> number_of;       ///< curve number of each vertex of the slice
   std::vector<GlobalIndex> number_in_file;  ///< number in the file of each curve number that this rank owns
   std::vector<Point> points;                ///< point of each curve number that this rank owns
 };

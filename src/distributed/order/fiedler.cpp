@@ -23,8 +23,7 @@
 namespace meshorder::distributed {
 namespace {
 
-// A vertex as it is sent to the rank that solves its component is a row of these entries, then its
-// neighbours.
+// Entries of the row that sends a vertex to the solver of its component; the vertex's neighbours follow.
 enum VertexEntry : std::size_t { kNumber, kInFile, kPlace, kStart, kFirstNeighbour };
 
 /// New numbers that this rank has found, for vertices of any rank, and reports on their components.
@@ -61,7 +60,7 @@ std::uint64_t ascending_bits(double value) {
   return (bits & kSignBit) != 0 ? ~bits : bits | kSignBit;
 }
 
-/// Sends the vertices of components that one rank solves; returns the rows that this rank receives.
+/// Sends vertices to the ranks that solve their components alone; returns the rows that this rank receives.
 Rows rows_to_solvers(const Communicator& communicator, const GlobalGraph& graph, const Components& components,
                      const std::vector<GlobalIndex>& number_in_file) {
   Rows rows;
@@ -126,7 +125,7 @@ void order_alone(const Rows& rows, const FiedlerOptions& options, Places& places
   }
 }
 
-/// Returns this rank's vertices of a component that all ranks solve, in the sequence of its Laplacian's rows.
+/// Returns this rank's vertices of a component that all ranks solve, in the sequence of the Laplacian's rows.
 std::vector<Index> own_members(const Components& components, const Component& component) {
   std::vector<Index> members;
   for (Index piece = 0; piece < components.pieces.component_count(); ++piece) {

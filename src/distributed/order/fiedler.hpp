@@ -13,8 +13,8 @@ namespace meshorder::distributed {
 
 /// Problem sizes up to which one rank works alone.
 struct SharedSizes {
-  GlobalIndex alone = 50'000;  ///< maximum size of a component on several ranks that one rank solves
-  GlobalIndex few = 50'000;    ///< maximum number of coarse vertices at the root; n / ranks if larger
+  GlobalIndex alone = 50'000;  ///< largest component on several ranks that a single rank still solves
+  GlobalIndex few = 50'000;    ///< maximum number of coarse vertices at the root; n / ranks if that is larger
 };
 
 /// The order by the Fiedler vector of a distributed graph.
@@ -32,11 +32,11 @@ struct SharedFiedlerOrder {
 /// threads.
 ///
 /// @param halo            halo of the graph's ghosts: neighbours that other ranks own
-/// @param number_in_file  number of each vertex of this rank. Fixes the sign as in the serial order: among
-///                        the entries with at least half of the largest magnitude, the first in the file is
-///                        negative
+/// @param number_in_file  number in the file of each vertex of this rank. Fixes the sign as in the serial
+///                        order: among the entries with at least half of the largest magnitude, the first in
+///                        the file is negative
 /// @param options         tolerance, max_iterations and seed
-/// @throws SharedError if the tolerance or the number of iterations is not positive; as
+/// @throws SharedError unless the tolerance is positive and finite and max_iterations ≥ 1; as
 ///         `Communicator::exchange`
 [[nodiscard]] SharedFiedlerOrder fiedler_order(const Communicator& communicator, const GlobalGraph& graph,
                                                const Halo& halo,

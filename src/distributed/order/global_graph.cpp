@@ -40,7 +40,7 @@ Incidence renumbered(const Rows& elements, const NumberSet& numbers) {
   return result;
 }
 
-/// Returns the rows of the vertices that a rank owns from a graph whose k-th vertex has the global number
+/// Returns the rows of a rank's vertices in global numbers; vertex k of `graph` has the global number
 /// `numbers[k]`. Vertices of the rank that are not in `numbers` get empty rows.
 Rows own_rows(const CsrGraph& graph, const std::vector<GlobalIndex>& numbers, const Layout& layout,
               int rank) {
@@ -68,7 +68,7 @@ GlobalGraph global_graph(const Communicator& communicator, const Layout& layout,
   std::vector<Dispatch> dispatches = communicator.together([&] { return to_owners(layout, elements); });
   Rows received = send_rows(communicator, std::move(elements), std::move(dispatches));
   return communicator.together([&] {
-    // local numbers ascend with the global ones, so that rows which ascend in one ascend in the other
+    // local numbers ascend with the global ones, so that ascending rows still ascend in global numbers
     const NumberSet set(received.entries);
     const std::vector<GlobalIndex>& numbers = set.numbers();
     if (numbers.size() > static_cast<std::size_t>(kMaxIndex)) {

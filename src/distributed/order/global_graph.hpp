@@ -11,8 +11,8 @@
 namespace meshorder::distributed {
 
 /// This rank's rows of an undirected graph. A row has the ascending global numbers of the neighbours, without
-/// loops and repeats. Every edge is in the rows of both its ends. PT-Scotch takes the arrays of `rows`
-/// without conversion.
+/// loops and repeats. Every edge is in the rows of both its ends. PT-Scotch reads `rows.entries` without
+/// conversion.
 struct GlobalGraph {
   Layout layout;  ///< the owners of the vertices
   Rows rows;      ///< the neighbours of each vertex of this rank
@@ -24,8 +24,7 @@ struct GlobalGraph {
 /// @param layout    the owners of the vertices
 /// @param elements  vertices of each element on this rank; freed before the graph is built, because they take
 ///                  as much memory as the graph
-/// @throws SharedError if the elements at a rank's vertices have more than
-///         2,147,483,647 different vertices,
+/// @throws SharedError if the elements at a rank's vertices have more than 2,147,483,647 different vertices,
 ///         or if a rank lacks memory
 [[nodiscard]] GlobalGraph global_graph(const Communicator& communicator, const Layout& layout, Rows elements);
 

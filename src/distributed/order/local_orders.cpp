@@ -15,8 +15,7 @@
 namespace meshorder::distributed {
 namespace {
 
-// A vertex as it is sent to the rank of its part: a row of these entries, followed by its neighbours in the
-// part.
+// Entries of the row that sends a vertex to the rank of its part; the vertex's neighbours in the part follow.
 enum Entry : std::size_t { kVertex, kPart, kPull, kIsInterface, kX, kY, kZ, kNeighbours };
 
 /// The rows of this rank's vertices, and the ranks to send them to.
@@ -89,7 +88,7 @@ LocalPart part_of_rows(const Rows& rows, std::span<const Offset> members) {
   return part;
 }
 
-/// Returns whether reversing an order brings vertices nearer to where their edges to other parts pull them.
+/// Returns whether reversing an order brings vertices nearer to their neighbours in other parts.
 bool is_the_wrong_way_round(std::span<const Index> places, const std::vector<float>& pull) {
   const double middle = 0.5 * (static_cast<double>(places.size()) - 1);
   double along = 0;
@@ -97,7 +96,7 @@ bool is_the_wrong_way_round(std::span<const Index> places, const std::vector<flo
   return along > 0;
 }
 
-/// Moves the vertices of the interface after the others; both keep their order.
+/// Moves the vertices of the interface after the others; both groups keep their order.
 void put_interface_last(std::vector<Index>& places, const std::vector<char>& is_interface) {
   std::vector<Index> vertex_at(places.size());
   for (Index v = 0; v < index_size(places); ++v) vertex_at[places[v]] = v;

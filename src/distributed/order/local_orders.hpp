@@ -17,20 +17,21 @@ namespace meshorder::distributed {
 struct PartOrders {
   std::vector<GlobalIndex> new_numbers;  ///< new number of the vertex of each row of the graph
   std::vector<GlobalIndex> starts;       ///< first new number of each part, then the end of the last part
-  std::vector<GlobalIndex> interfaces;   ///< for each part, the number of vertices with outside neighbours
+  std::vector<GlobalIndex> interfaces;   ///< by part: number of vertices with neighbours in other parts
   GlobalIndex ghosts = 0;                ///< number of outside neighbours, summed over the parts
 };
 
-/// Orders each part by a method, on the rank of that part. In `spectral`, edges to earlier and later parts
-/// pull vertices forward or back. The orders of `fiedler`, `minla`, `hilbert` and `morton` are reversed if
-/// that brings the two ends of edges between parts nearer to each other. Every rank has to call it. Costs
-/// O(entries) + method.
+/// Orders each part by a method, on the rank of that part. In `spectral`, edges to earlier parts pull
+/// vertices to the front, and edges to later parts to the end. The orders of `fiedler`, `minla`, `hilbert`
+/// and `morton` are reversed if that brings the two ends of edges between parts nearer to each other. Every
+/// rank has to call it. O(entries), plus the cost of the method.
 ///
 /// @param graph     numbered along `curve`; a part's vertices go to the method in that order
 /// @param place_of  for each vertex, the position of its part in the order of the parts
 /// @param method    name of a vertex method
 /// @param interface_place where a part's order has the vertices with neighbours in other parts
-/// @throws as `Communicator::exchange`; SharedError with what the method throws
+/// @throws as `Communicator::exchange`; SharedError if the method throws, or for a part of more than
+///         2,147,483,647 vertices
 [[nodiscard]] PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph& graph,
                                           const Curve& curve, const HaloValues<Index>& place_of, Index parts,
                                           std::string_view method, InterfacePlace interface_place,

@@ -15,7 +15,7 @@ MeshSlice scattered(const Communicator& communicator, const Mesh& mesh) {
   const std::vector<Offset>& cell_starts = slice.cells.starts();
   slice.shapes = communicator.scattered_from_root(mesh.cells.shapes, cell_starts);
 
-  // where rows begin in the root's array; where they begin in this rank's array is computed below
+  // where this rank's rows begin in the root's array; the offsets below are relative to the first row
   const std::vector<Offset> begins = communicator.scattered_from_root(mesh.cells.offsets, cell_starts);
   std::vector<Offset> vertex_starts(cell_starts.size(), 0);
   if (communicator.is_root()) {

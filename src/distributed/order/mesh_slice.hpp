@@ -10,8 +10,7 @@
 
 namespace meshorder::distributed {
 
-/// A rank's part of a mesh as it is read or scattered: ranges of the vertices and cells by their numbers in
-/// the file.
+/// A rank's part of a mesh: a range of the vertices and a range of the cells, by their numbers in the file.
 struct MeshSlice {
   Layout vertices;
   Layout cells;

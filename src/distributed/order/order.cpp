@@ -65,7 +65,8 @@ void renumber(Rows& rows, const Halo& halo, const std::vector<GlobalIndex>& valu
   for (GlobalIndex& vertex : rows.entries) vertex = values[halo.position(vertex)];
 }
 
-/// Marks the vertices of a slice that elements use: the elements' halo fetches them from this rank.
+/// Returns 1 for each vertex of this rank that elements use, else 0. `halo`, the elements' halo, requests
+/// exactly the used vertices.
 std::vector<char> used_vertices(const Communicator& communicator, const Layout& vertices, const Halo& halo) {
   return communicator.together([&] {
     std::vector<char> used(static_cast<std::size_t>(vertices.size(communicator.rank())), 0);

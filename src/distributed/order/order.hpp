@@ -57,15 +57,16 @@ struct DistributedOrder {
   DistributedReport report;
 };
 
-/// Orders a mesh. Parts with common edges get near numbers. The method orders the vertices of a part;
-/// vertices that no element uses come last, in their old order. Cells are in the order `lexmax`. With
+/// Orders a mesh. Parts that edges join get nearby ranges of numbers. The method orders the vertices of a
+/// part; vertices that no element uses come last, in their old order. Cells are in the order `lexmax`. With
 /// `Partitioner::order` the method orders all vertices, and parts are equal ranges of that order. Every rank
 /// has to call it.
 ///
 /// @param slice  its arrays are freed as soon as they are no longer needed
-/// @throws SharedError for a method that does not exist or has no meaning within parts, for a negative number
-///         of parts, for `Partitioner::order` with another method than `fiedler` or with a balance or place
-///         of interfaces that equal ranges cannot have, and if a rank fails
+/// @throws SharedError for a method that does not exist or has no meaning within parts, for a number of parts
+///         that is negative, or above a million and above the number of vertices, for `Partitioner::order`
+///         with another method than `fiedler` or with a balance or place of interfaces that equal ranges
+///         cannot have, and if a rank fails
 /// @note The order depends only on the mesh, the options and the number of ranks; with `Partitioner::hilbert`
 ///       and a given number of parts, it does not depend on the number of ranks.
 [[nodiscard]] DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,

@@ -18,16 +18,16 @@ struct OwnedMesh {
   Rows cells;                 ///< numbers of the vertices of this rank's elements
 };
 
-/// The order of the vertices that a rank owns and of its elements.
+/// New numbers of a rank's vertices, and the new order of the rank's elements.
 struct OwnedOrder {
   std::vector<GlobalIndex> new_numbers;  ///< new number of each vertex of this rank, within the rank's range
-  std::vector<GlobalIndex> cells;        ///< indices of this rank's elements, sorted in their new order
+  std::vector<GlobalIndex> cells;        ///< indices of this rank's elements in their new order
 };
 
 /// Orders the vertices of every rank among themselves, and the elements of each rank by `lexmax`. Every rank
 /// has to call it. O(sum of element sizes squared · log degree), plus the cost of the method.
 ///
-/// @param mesh     elements may be on several ranks
+/// @param mesh     an element may be on several ranks
 /// @param options  only `vertices`, `interface_place` and `order` are used
 /// @throws SharedError for a method that does not exist or needs coordinates that are missing, and if a rank
 ///         fails
@@ -38,10 +38,10 @@ struct OwnedOrder {
 struct OwnedParts {
   std::vector<GlobalIndex> new_numbers;  ///< new number of each vertex of this rank
   std::vector<GlobalIndex> starts;       ///< first new number of each part, then the end of the last part
-  std::vector<GlobalIndex> cells;        ///< part of each element: that of its vertex of largest new number
+  std::vector<GlobalIndex> cells;        ///< part of each element: that of its vertex with the largest number
 };
 
-/// Orders the vertices as `order_slices` does. Every rank has to call it.
+/// Orders the vertices as `order_slices` does, and finds the part of each element. Every rank has to call it.
 ///
 /// @param mesh  must have coordinates, and each element on one rank only
 /// @throws SharedError without coordinates, and as `order_slices`

@@ -26,8 +26,8 @@ enum class Partitioner : std::uint8_t {
   order,     ///< equal ranges of one order of the whole graph; parts are not ordered separately
 };
 
-/// Where the order of a part has the part's interface. The interface is the set of vertices that share
-/// an element with vertices of other parts.
+/// The place of a part's interface in the part's order. The interface is the set of vertices that share an
+/// element with vertices of other parts.
 enum class InterfacePlace : std::uint8_t {
   mixed,  ///< anywhere, as the method orders them
   last,   ///< after the part's other vertices; both groups keep the method's order

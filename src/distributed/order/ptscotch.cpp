@@ -64,7 +64,7 @@ bool cut_by_ptscotch(const Communicator& communicator, const GlobalGraph& graph,
   // PT-Scotch takes non-const arrays, but does not change these
   std::vector<SCOTCH_Num> starts;
   std::vector<SCOTCH_Num> result;
-  std::vector<SCOTCH_Num> loads;  // weights; must be passed on all ranks, even without vertices, or on none
+  std::vector<SCOTCH_Num> loads;  // weights; passed by all ranks (also those without vertices) or by none
   const bool is_weighted = communicator.sum(static_cast<GlobalIndex>(weights.size())) > 0;
   communicator.together([&] {
     starts.assign(graph.rows.offsets.begin(), graph.rows.offsets.end());

@@ -14,7 +14,7 @@ namespace {
 constexpr double kTolerance = 1e-6;  // tolerance of the Fiedler vector, cheap for a graph this small
 constexpr int kPasses = 20;          // maximum number of passes over all parts; a few usually suffice
 
-/// The number of edges between two parts, a < b.
+/// Two parts, a < b, and the number of edges between them.
 struct Border {
   Index a;
   Index b;
@@ -23,7 +23,7 @@ struct Border {
 
 bool have_same_parts(const Border& x, const Border& y) { return x.a == y.a && x.b == y.b; }
 
-/// Returns the borders, with the edges of all borders between the same two parts added up.
+/// Returns one border for each pair of parts, with the sum of the edges of all given borders of the pair.
 std::vector<Border> merged(std::vector<Border> borders) {
   std::sort(borders.begin(), borders.end(),
             [](const Border& x, const Border& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
@@ -56,7 +56,7 @@ std::vector<Border> borders_of(const GlobalGraph& graph, const HaloValues<Index>
   return merged(std::move(borders));
 }
 
-/// Returns the quotient graph. Each part has length 1, since parts are about equally large.
+/// Returns the quotient graph. Each part has volume 1, because parts are about equally large.
 ArrangementGraph graph_of(const std::vector<Border>& borders, Index parts) {
   ArrangementGraph graph;
   graph.offsets.assign(static_cast<std::size_t>(parts) + 1, 0);

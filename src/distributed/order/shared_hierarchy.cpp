@@ -123,7 +123,7 @@ void SharedHierarchy::gather(const SharedLevel& coarse) {
   });
 }
 
-/// Returns, for this rank's rows, the correction of the level that the root has gathered.
+/// Computes the correction of the gathered level at the root; returns this rank's rows.
 template <int M>
 VectorBlock<M> SharedHierarchy::corrected_at_root(const VectorBlock<M>& own) {
   VectorBlock<M> b = communicator_.gathered_at_root(own);
@@ -136,7 +136,7 @@ VectorBlock<M> SharedHierarchy::corrected_at_root(const VectorBlock<M>& own) {
   return communicator_.scattered_from_root(x, gathered_.starts());
 }
 
-/// Returns, for this rank's rows, the correction of a level other than the finest one, by two cycles.
+/// Computes the correction of a level other than the finest, by two cycles; returns this rank's rows.
 template <int M>
 VectorBlock<M> SharedHierarchy::coarse_correction(std::size_t level, VectorBlock<M> b) {
   if (level == levels_.size()) return corrected_at_root<M>(b);

@@ -36,7 +36,7 @@ struct SharedLevel {
 class SharedHierarchy {
  public:
   /// @param few  coarse vertices go to the root when all ranks together have at most this many, or when a
-  ///             coarsening step leaves most vertices
+  ///             coarsening step is not worthwhile (`kWorthwhile`)
   /// @throws SharedError if a rank lacks memory
   SharedHierarchy(const Communicator& communicator, SharedLevel finest, GlobalIndex few);
 
