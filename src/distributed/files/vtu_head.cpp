@@ -24,7 +24,7 @@
 namespace meshorder::distributed {
 namespace {
 
-constexpr std::size_t kLongestHead = std::size_t{1} << 26;
+constexpr std::size_t kLongestHead = std::size_t{1} << 25;
 constexpr Offset kMost = std::numeric_limits<Offset>::max();
 constexpr Offset kMostComponents = Offset{1} << 24;
 constexpr std::string_view kAppended = "<AppendedData";

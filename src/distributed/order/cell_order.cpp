@@ -46,7 +46,7 @@ std::vector<GlobalIndex> sorted_by_lexmax(Rows rows) {
   {
     const NumberSet vertices = vertices_in(rows);
     if (std::max<Offset>(rows.size(), std::ssize(vertices.numbers())) > kMaxIndex) {
-      throw TooLarge("more than 2,147,483,647 cells on a rank; start more ranks");
+      throw TooLarge("more than 2,147,483,647 cells or vertices on a rank; start more ranks");
     }
     cells.vertex_count = index_size(vertices.numbers());
     cells.vertices.reserve(rows.entries.size());
