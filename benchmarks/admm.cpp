@@ -85,8 +85,8 @@ Runner make_runner(const std::string& name, int threads, mo::Scenario scenario, 
   return {name, threads, mo::set_up(std::move(scenario), mesh, file)};
 }
 
-/// Returns the scenario with the body just above `top`, the highest point of the obstacles, at the speed of
-/// its fall to there.
+/// Returns the scenario with the body just above `top`, the highest point of the obstacles, with the speed of
+/// a fall from its first place.
 mo::Scenario before_contact(mo::Scenario scenario, double top) {
   const double gravity = -scenario.motion().gravity[1];
   const double fall = (*scenario.bottom)[1] - top;
@@ -96,7 +96,7 @@ mo::Scenario before_contact(mo::Scenario scenario, double top) {
   return scenario;
 }
 
-/// Returns the highest point of the obstacles: floors and bowls about the y axis.
+/// Returns the height of the highest point of the obstacles, which are floors and bowls about the y axis.
 double top_of(const mo::ProjectiveScenario& options) {
   double top = 0.0;
   for (const mo::ScenarioObstacle& obstacle : options.obstacles) {

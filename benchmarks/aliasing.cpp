@@ -62,7 +62,7 @@ class Pages {
   void* start_;
 };
 
-/// The kernels of a mesh in one order.
+/// The data of the kernels for a mesh in one order.
 struct Problem {
   std::string order;
   mo::RestShapes rest;

@@ -2,11 +2,11 @@
 //
 // cg [--solve | --half] [--rounds N] [--orders a,b,…] FILE…: conjugate gradients on the system of an implicit
 // time step of each mesh, (1 + h α) M + h² K at rest, in several orders. Prints the best ms of an iteration
-// in interleaved rounds, with the matrix in double and in float, on one and two threads, and its rate in per
-// cent of the measured bandwidth (over 100: caches keep data from pass to pass). "band" is the ideal order
-// (see ideal_band). With --solve: iterations and seconds to 1e-6 with each preconditioner. With --half: the
-// product and the iteration with the whole matrix and with half of it (see HalfBlockCsrOf), in double and in
-// float, in turns; on one thread processor time.
+// in interleaved rounds, with the matrix in double and in float, on one and two threads, and the iteration's
+// memory traffic in per cent of the measured bandwidth (over 100: caches keep data from pass to pass). "band"
+// is the ideal order (see ideal_band). With --solve: iterations and seconds to 1e-6 with each preconditioner.
+// With --half: the product and the iteration with the whole matrix and with half of it (see HalfBlockCsrOf),
+// in double and in float, in turns; on one thread processor time.
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "io/format.hpp"
@@ -138,7 +138,7 @@ double product_ms(System& system) {
   return 1e3 * stopwatch.seconds() / kRepeats;
 }
 
-/// Lowers `best` to the milliseconds of a repeat: processor time on one thread, wall-clock time on several.
+/// Lowers `best` to the ms of a repeat, if less: processor time on one thread, wall-clock time on several.
 template <class Work>
 void take_best(double& best, int threads, int repeats, Work work) {
   const mo::ThreadStopwatch thread;

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// hard_graphs: the Fiedler solver on graphs that are no meshes, on one thread: time, iterations, λ₂ beside
-// the exact one where that is known, and whether it converged.
+// hard_graphs: runs the Fiedler solver on graphs that are not meshes, on one thread; prints time, iterations,
+// λ₂ and its exact value if known, the residual, and whether the solver converged.
 #include "base/stopwatch.hpp"
 #include "spectral/fiedler.hpp"
 #include "support/sample_graphs.hpp"
@@ -33,7 +33,7 @@ void report(const std::string& name, const CsrGraph& graph, std::optional<double
              unfinished == 0 ? "" : fmt::format("{} not converged", unfinished));
 }
 
-/// Returns weights spread evenly over so many decades. An edge has the same weight in both of its rows.
+/// Returns weights spread evenly over `decades` decades. An edge has the same weight in both of its rows.
 std::vector<double> weights_over(const CsrGraph& graph, double decades) {
   std::vector<double> weights;
   for (Index v = 0; v < graph.size(); ++v) {

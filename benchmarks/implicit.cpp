@@ -64,8 +64,8 @@ const mo::ElasticSystem& system_of(const Runner& runner) {
   return dynamic_cast<const mo::BackwardEuler&>(*runner.simulation.body).system();
 }
 
-/// Operations that compute forces and matrix of a tetrahedron: counted in the source of the corotational law,
-/// with the formula of its rotation. StVK takes about as many.
+/// Number of operations for the forces and the matrix of a tetrahedron: counted in the source of the
+/// corotational law, including the rotation. StVK takes about as many.
 constexpr double kAssemblyOperations = 700;
 
 /// Returns the bytes that the assembly of forces and matrix moves if every array passes through the processor
@@ -82,7 +82,7 @@ double assembly_bytes(const Runner& runner) {
 
 /// Returns the operations of an iteration: 18 a block, and 12 for each entry of the vectors.
 double iteration_operations(const Runner& runner) {
-  // half of the matrix takes as many operations
+  // a product with half of the matrix takes as many operations
   const mo::BlockCsr& matrix = system_of(runner).matrix();
   return 18 * static_cast<double>(matrix.block_count()) + 12 * 3.0 * matrix.size();
 }

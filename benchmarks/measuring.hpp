@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// Shared by the benchmarks of time steps.
+// Shared by several benchmarks.
 #include "lab/scenario/scenario.hpp"
 #include "payoff/memory_probe.hpp"
 
@@ -38,7 +38,7 @@ inline std::vector<double> measure_bandwidths() {
   return bandwidths;
 }
 
-/// Returns the scenario with its vertices in that order, and its elements in the order that goes with it.
+/// Returns the scenario with its vertices in that order, and its elements in the matching order.
 inline meshorder::Scenario in_order(meshorder::Scenario scenario, const std::string& order) {
   scenario.vertex_order = order;
   scenario.element_order = order == "original" || order == "scrambled" ? order : "lexmax";

@@ -16,7 +16,8 @@ namespace HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Computes rounds of independent multiply-adds, enough of them to fill the pipeline; returns the operations.
+/// Computes rounds of multiply-adds, with enough independent ones to fill the pipeline; returns their
+/// operations.
 double multiply_and_add(int rounds) {
   using Tag = hn::CappedTag<double, 8>;
   const Tag d;

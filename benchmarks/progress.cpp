@@ -3,8 +3,8 @@
 // Measures how often an order reports its progress, and how soon it stops: `progress [N] [METHOD…]`. On a
 // lattice of N³ cubes, six tetrahedra each, its vertices scrambled (default N = 122: 1.86 million vertices),
 // for every method: the time of the call, the longest time between two calls of the progress function (from
-// the beginning and to the end, too), and the longest time from the moment that it returns false to the
-// exception, over stops at five moments of the call.
+// the beginning and to the end, too), and the longest time from the moment that this function returns false
+// to the exception, over stops at five moments of the call.
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "mesh/reorder.hpp"
@@ -33,10 +33,10 @@ double seconds_since(Clock::time_point start) {
 
 struct Gap {
   double seconds = 0;
-  std::string after = "check";  ///< the stage in which it began
+  std::string after = "check";  ///< the stage in which the gap began
 };
 
-/// Returns the time of `call(run)`, and the longest time between two calls of the progress function in it.
+/// Returns the time of `call(run)`, and the longest gap between its start, its progress calls and its end.
 template <class Call>
 std::pair<double, Gap> longest_gap(const Call& call) {
   const auto start = Clock::now();

@@ -63,7 +63,7 @@ double rotate_chosen(const float* matrices, Index count) {
   return MESHORDER_SIMD(rotate_floats)(matrices, count);
 }
 
-constexpr Index kMatrices = 1024;  // in the nearest cache
+constexpr Index kMatrices = 1024;  // they fit in the nearest cache
 constexpr int kRounds = 2000;
 
 template <class Number>

@@ -21,7 +21,7 @@ namespace mo = meshorder;
 
 namespace {
 
-/// Returns a line of /proc/self/status that counts kilobytes, in MB.
+/// Returns, in MB, the number in a line of /proc/self/status, which is in kB.
 double megabytes(const std::string& key) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // The functions that the page's worker calls: they take files in memory, order one as `meshorder order` does,
-// and return what the page shows. The module itself calls only `tell`.
+// and return what the page shows. Of the page's functions, this module calls only `tell`.
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
@@ -58,7 +58,7 @@ class GivenFiles : public FileStore {
     files_[path.string()] = std::move(bytes);
   }
 
-  /// Returns room for a file of that size.
+  /// Makes a file of zeros of that size; returns its bytes, to be filled.
   char* make(const char* name, std::size_t size) {
     std::string& bytes = files_[name];
     bytes.assign(size, '\0');
@@ -70,7 +70,7 @@ class GivenFiles : public FileStore {
   std::map<std::string, std::string> files_;
 };
 
-/// A named part of the result: a text, or numbers as bytes.
+/// A named part of the result: a text, or an array of numbers.
 struct Part {
   std::string name;
   std::variant<std::string, std::vector<float>, std::vector<std::uint32_t>, std::vector<double>> values;
@@ -81,8 +81,8 @@ GivenFiles files;
 std::vector<Part> parts;
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
-/// Adds the surface: the places of its vertices, its triangles, and the vertices' ranks as they are.
-/// Returns the vertices; none where a mesh has no surface. `mesh` is as it was read.
+/// Adds the parts "places" (of the surface's vertices) and "triangles". Returns the surface's vertices; none
+/// if the mesh has no surface. `mesh` is as it was read.
 std::vector<Index> add_surface(const Mesh& mesh) {
   std::vector<std::array<Index, 3>> triangles;
   try {
@@ -106,7 +106,7 @@ std::vector<Index> add_surface(const Mesh& mesh) {
   }
   std::vector<float> places;
   places.reserve(3 * vertices.size());
-  const auto origin = mesh.points[vertices.empty() ? 0 : vertices.front()];  // floats keep small numbers best
+  const auto origin = mesh.points[vertices.empty() ? 0 : vertices.front()];  // floats are finest near 0
   for (const Index v : vertices) {
     for (std::size_t k = 0; k < 3; ++k) places.push_back(static_cast<float>(mesh.points[v][k] - origin[k]));
   }
@@ -122,7 +122,7 @@ void add_ranks(const char* name, const std::vector<Index>& vertices, const Permu
   parts.push_back({name, std::move(ranks)});
 }
 
-/// Orders a file into `output`. The steps are those of `Ordering` in apps/meshorder/order.cpp.
+/// Orders the file `input` into `output`. The steps are those of `Ordering` in apps/meshorder/order.cpp.
 void order(const std::string& input, const std::string& output, const MeshMethods& methods) {
   Notes notes;
   (void)output_format_of(output);  // fail before the work
@@ -181,7 +181,7 @@ using namespace meshorder;  // NOLINT(google-build-using-namespace): of the func
 
 extern "C" {
 
-/// Makes a file of that size and returns the place of its bytes, for the page to fill; null without memory.
+/// Makes a file of that size and returns its bytes, for the page to fill; null if memory does not suffice.
 EMSCRIPTEN_KEEPALIVE char* give_file(const char* name, std::size_t size) {
   try {
     return files.make(name, size);
@@ -190,8 +190,8 @@ EMSCRIPTEN_KEEPALIVE char* give_file(const char* name, std::size_t size) {
   }
 }
 
-/// Orders the file `input` and keeps the result as parts, of which the part "error" is the only one if that
-/// fails. The names of methods are those of the command.
+/// Orders the file `input` and keeps the result as parts; if that fails, the part "error" is the only one.
+/// The names of methods are those of the command.
 EMSCRIPTEN_KEEPALIVE void order_file(const char* input, const char* output, const char* vertices,
                                      const char* elements) {
   parts.clear();

@@ -66,7 +66,7 @@ double mean_log2_span(const Surface& s) {
 
 int main() {
   Surface kept = square(120);
-  Surface left = kept;  // the same without a new order
+  Surface left = kept;  // the same mesh, never reordered
   mo::Reorderer reorderer({.method = "hilbert"});
   for (int step = 0; step < 40; ++step) {
     std::vector<int> previous(kept.x.size());

@@ -88,14 +88,14 @@ bool is_right() {
   mo::move_rows(order.vertices.permutation, height);
   const bool mesh_is_same = is_near(length(surface), length_before) && height == surface.points.col(2);
 
-  // a matrix: its own order
+  // a matrix: it has an order of its own
   const auto rows = mo::permutation_matrix(mo::order_vertices(mo::graph_view(before), "rcm").permutation);
   Eigen::SparseMatrix<double> after;
   after = before.twistedBy(rows);
   const Eigen::VectorXd x = Eigen::VectorXd::Random(before.rows());
   const bool matrix_is_same = (after * (rows * x)).isApprox(rows * (before * x));
 
-  // the other storage order gives the same order, and a transposed mesh is refused
+  // a mesh stored row by row gets the same order, and a transposed mesh is refused
   const Surface again = sample();
   const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> points = again.points;
   const Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor> faces = again.faces;

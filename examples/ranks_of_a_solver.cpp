@@ -18,8 +18,8 @@ namespace {
 constexpr std::int64_t kRows = 60;     // rows of vertices
 constexpr std::int64_t kColumns = 20;  // columns of vertices that a rank owns
 
-/// Returns the number, across the ranks, of the vertex in row i and column j. The vertices of a rank are
-/// numbered in steps of seven, modulo their count.
+/// Returns the global number of the vertex in row i and column j. The vertices of a rank are numbered in
+/// steps of seven, modulo their count.
 std::int64_t number_of(std::int64_t i, std::int64_t j) {
   const std::int64_t owner = j / kColumns;
   const std::int64_t place = j % kColumns * kRows + i;
@@ -40,7 +40,8 @@ std::vector<std::int64_t> triangles_of(int rank) {
   return vertices;
 }
 
-/// Returns the mean difference of the numbers of own vertices that share an edge, over the triangles' edges.
+/// Returns the mean difference of the ends' numbers, over the triangles' edges whose ends are both own
+/// vertices.
 double mean_span(const std::vector<std::int64_t>& vertices, std::int64_t first,
                  const std::vector<std::int64_t>& number) {
   double sum = 0;
@@ -57,7 +58,7 @@ double mean_span(const std::vector<std::int64_t>& vertices, std::int64_t first,
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
-/// Orders this rank's vertices and elements. Returns true if the mean difference is smaller than before.
+/// Orders this rank's vertices and elements. Returns whether the mean span shrinks.
 bool improves(int rank) {
   const std::vector<std::int64_t> vertices = triangles_of(rank);
   std::vector<std::int64_t> offsets;

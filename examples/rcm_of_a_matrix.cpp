@@ -20,7 +20,7 @@ struct Matrix {
 };
 
 // Returns the Laplacian of a grid of side × side points, in a poor order: point i is in row 7 i mod n. The
-// first row lacks an entry that its column has, as in matrices with boundary conditions.
+// first row lacks an entry that the first column has, as in matrices with boundary conditions.
 Matrix sample(int side) {
   const int n = side * side;
   std::vector<int> point_of_row(static_cast<std::size_t>(n));

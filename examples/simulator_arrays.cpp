@@ -124,14 +124,14 @@ double moment(const Body& body) {
   return sum;
 }
 
-// Returns whether each spring is at rest, and the pinned vertices are those of the first layer.
+// Returns whether each spring is at rest and all pinned vertices are in the first layer.
 bool is_at_rest(const Body& body) {
   for (std::size_t s = 0; s < body.springs.size(); ++s)
     if (std::abs(distance(body, body.springs[s]) - body.rest_length[s]) > 1e-12) return false;
   return std::ranges::all_of(body.pinned, [&](int v) { return body.x[static_cast<std::size_t>(v)][2] == 0; });
 }
 
-// Returns the mean distance in memory, in vertices, of the ends that springs use one after another.
+// Returns the mean distance in memory, in vertices, from a spring's ends to the next spring's ends.
 double mean_step(const Body& body) {
   double sum = 0;
   for (std::size_t s = 1; s < body.springs.size(); ++s) {

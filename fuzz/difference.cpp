@@ -63,7 +63,7 @@ std::vector<Point> corners_of(const Mesh& mesh) {
   return result;
 }
 
-/// Returns the vertices of each cell, ascending; the cells in ascending order.
+/// Returns the cells in ascending order, each as its vertices in ascending order.
 std::vector<std::vector<Index>> sorted_cells(const Cells& cells) {
   std::vector<std::vector<Index>> result;
   for (Index c = 0; c < cells.size(); ++c) {
@@ -96,8 +96,8 @@ std::string difference_of_arrays(const DataArray& a, const DataArray& b) {
   return {};
 }
 
-/// Returns the ids; an empty list if they count from 1 on. Such ids hold no information: Gmsh files always
-/// have numbers of nodes.
+/// Returns the ids; an empty list if they are 1, 2, 3, … Such ids hold no information, since Gmsh files
+/// always number their nodes.
 std::vector<std::int64_t> told_ids(const std::vector<std::int64_t>& ids) {
   std::int64_t next = 1;
   const bool counts = std::all_of(ids.begin(), ids.end(), [&](std::int64_t id) { return id == next++; });
@@ -128,8 +128,9 @@ std::string difference_of_data(const Mesh& a, const Mesh& b) {
   return {};
 }
 
-/// Returns whether two cells of a shape have the same vertices. VTK's files do not define the orientation of
-/// a linear wedge: for a wedge without a sensible volume, the reader may take the mirror image.
+/// Returns whether two cells of the same shape have the same vertices. VTK's files do not define the
+/// orientation of a linear wedge: for a wedge without a sensible volume, the reader may take the mirror
+/// image.
 bool same_cell(std::span<const Index> a, std::span<const Index> b) {
   if (std::equal(a.begin(), a.end(), b.begin(), b.end())) return true;
   constexpr std::array<std::size_t, 6> kMirrored{0, 2, 1, 3, 5, 4};

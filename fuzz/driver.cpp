@@ -37,7 +37,7 @@ constexpr std::array<std::string_view, 10> kNumbers{
 
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): signals and engines have no other context
 std::mt19937 random_numbers;
-std::string current;  // input
+std::string current;  // the input that is being checked
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 void keep_input() {

@@ -1,7 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// The functions that a fuzzing engine calls. One program serves all families: its name ends in the family's
-// name. "_whole_" before this name means that mutations leave files whole that a library reads.
+// The functions that a fuzzing engine calls. One program serves all families; its copy for a family has a
+// name that ends in the family's. "_whole_" before the family's name means that mutations do not damage files
+// that a library reads.
 #include "fuzz/engine.hpp"
 #include "fuzz/family.hpp"
 
@@ -79,8 +80,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
                                                unsigned seed) {
-  constexpr unsigned kOneIn = 2;  // one mutation in so many knows the structure
-  // Libraries crash on some damaged files. A `mutate` that calls the library gets none, since it would crash.
+  constexpr unsigned kOneIn = 2;  // one mutation in this many knows the structure
+  // Libraries crash on some damaged files: a `mutate` that calls a library is used only on whole files.
   const bool knows = chosen->by_library ? keeps_files_whole : seed % kOneIn == 0;
   if (chosen->mutate != nullptr && knows) {
     const std::string result = changed({data, data + size}, static_cast<std::uint32_t>(std::mt19937(seed)()));

@@ -19,7 +19,7 @@ using exodus::NcType;
 
 constexpr std::size_t kNameLength = 33;
 
-/// Declares variables of a file whose dimensions are declared.
+/// Declares dimensions and variables of a file; a variable's dimensions come first.
 class Variables {
  public:
   explicit Variables(NcOutput& file) : file_(file) {}
@@ -48,7 +48,6 @@ class Variables {
     }
     file_.get().later([sink, table, rows = of.size()] { sink.bytes({rows, kNameLength}, table); });
   }
-  /// Declares a dimension.
   void dimension(const std::string& name, std::size_t length) {
     (void)file_.get().dimension({name, length});
     lengths_[name] = length;

@@ -33,7 +33,7 @@ Mesh read(std::string_view format, const std::vector<MemoryFile>& files) {
                     .companion = [&](std::string_view name) { return bytes_of(files, name); }});
 }
 
-/// Reads files that may be faulty; returns nothing if they are refused.
+/// Reads files that may be faulty; returns nothing if they are refused, with a message of one line.
 std::optional<Mesh> read_any(std::string_view format, const std::vector<MemoryFile>& files) {
   std::string message;
   try {
@@ -47,7 +47,7 @@ std::optional<Mesh> read_any(std::string_view format, const std::vector<MemoryFi
   return {};
 }
 
-/// Reads files that were written just now.
+/// Reads files that were written just now; aborts if the reader throws.
 Mesh read_back(std::string_view format, const std::vector<MemoryFile>& files) {
   try {
     return read(format, files);
@@ -111,8 +111,8 @@ void check_same_format(const Mesh& mesh, std::string_view format, const std::str
   // cells that alternate between entities of Gmsh make no blocks; if the order has made the cells of an
   // entity adjacent, the mesh that is read back has blocks
   if (format == "gmsh" && mesh.cell_blocks.empty()) again.cell_blocks.clear();
-  // Ids that run from 0 or 1 in the moved mesh are positions, which Vega's reader does not keep as ids; nor
-  // does TetGen's, if the ids of each file run so.
+  // Vega's reader does not keep ids that run from 0 or 1 in the moved mesh, as they are positions; nor does
+  // TetGen's reader, if the ids of each file run so.
   if (format == "tetgen" || format == "vega") {
     if (again.vertex_ids.empty() && is_run(mesh.vertex_ids)) again.vertex_ids = mesh.vertex_ids;
     if (again.cell_ids.empty() && cells_run(mesh)) again.cell_ids = mesh.cell_ids;
@@ -124,7 +124,7 @@ void check_same_format(const Mesh& mesh, std::string_view format, const std::str
   if (!found.empty()) fail("written and read as " + std::string(format) + ": " + found);
 }
 
-/// Checks a mesh that was written in another format: only its cells, since formats differ in arrays and sets.
+/// Writes a mesh in another format and reads it. Compares cells only: formats differ in arrays and sets.
 void check_other_format(Mesh mesh, std::string_view format) {
   Notes notes;
   keep_cells(mesh, {.format = std::string(format)});

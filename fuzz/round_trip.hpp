@@ -9,10 +9,10 @@
 
 namespace meshorder::fuzz {
 
-/// Checks what is promised of a mesh file, and aborts with a message if a promise is broken:
+/// Checks the promises about a mesh file, and aborts with a message if a promise is broken:
 /// - Reading the file gives an error of one line or a mesh that `check_mesh` accepts.
 /// - That mesh, with vertices and cells moved, is the same after it is written and read.
-/// - Written in another format that holds its cells, the mesh has the same cells.
+/// - Written in another format that can hold its cells (one input in four), the mesh has the same cells.
 void check_mesh_files(std::string_view format, const std::vector<MemoryFile>& files);
 
 }  // namespace meshorder::fuzz

@@ -19,7 +19,7 @@ namespace measuring {
 
 struct Tetrahedra {
   std::vector<std::array<double, 3>> points;
-  std::vector<std::array<int, 4>> cells;  ///< of positive volume as VTK counts it, as TetGen makes them
+  std::vector<std::array<int, 4>> cells;  ///< oriented as VTK's and TetGen's tetrahedra are
 };
 
 /// Reads PREFIX.node and PREFIX.ele, as `tetgen` writes them, numbered from 0.
@@ -67,7 +67,7 @@ inline double median(std::vector<double> values) {
 /// An order and the work to be timed in it.
 struct Case {
   std::string name;
-  std::string facts;  ///< cells of the table that need no timing, between their bars
+  std::string facts;  ///< cells of the table without timings, separated by bars
   std::vector<std::function<void()>> work;
 };
 
@@ -76,7 +76,7 @@ struct Case {
 /// work is than in the first case.
 ///
 /// @param titles  of the works
-/// @param facts   titles of `Case::facts`, between their bars
+/// @param facts   titles of the cells in `Case::facts`, separated by bars
 inline void measure(const std::vector<Case>& cases, const std::vector<std::string>& titles,
                     const std::string& facts, int rounds) {
   std::vector times(cases.size(), std::vector<std::vector<double>>(titles.size()));

@@ -11,7 +11,7 @@
 // - by how much mean log2 spans exceed those of fresh orders: the mean of the steps, and the worst step;
 // - the costs of orders relative to those of fresh orders: from the graph, without a check; and from cells,
 //   where fresh orders include building the graph;
-// - the median cost of each kind of repair.
+// - for each kind of repair, the number and the median cost, relative to a fresh order.
 //
 // Costs are processor time of the calls; with several threads, wall-clock time. Needs meshorder-delaunay
 // beside this program.
@@ -58,7 +58,7 @@ auto timed(double& seconds, const Call& call) {
 
 OrderOptions options() { return {.check = Check::none, .run = {.threads = threads}}; }
 
-/// A step in the arrays of a program, which have an order of their own.
+/// A step of a trace in a program's arrays, which have an order of their own.
 struct Arrays {
   std::vector<Point> points;
   std::vector<Index> corners;
@@ -120,7 +120,7 @@ class Places {
   std::vector<Index> at_;
 };
 
-/// A program that orders its arrays in each step in one way.
+/// A program that orders its arrays in each step by one strategy.
 class Strategy {
  public:
   enum class Kind { fresh, kept, carried, kept_cells };

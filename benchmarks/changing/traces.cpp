@@ -47,7 +47,7 @@ class InCube : public Trace {
         points_(jittered_lattice(along_edge(count), random_)),
         spacing_(1.0 / along_edge(count)) {}
 
-  /// Returns the tetrahedra without the thin ones along the cube's faces.
+  /// Returns the corners of the Delaunay tetrahedra, without the thin ones along the cube's faces.
   [[nodiscard]] std::vector<Index> corners(const std::vector<Point>& points) const {
     constexpr double kHoles = 1.5;
     const std::vector<Walls> walls(points.size(), kNoWalls);
@@ -157,7 +157,7 @@ class Refine : public InCube {
 
  private:
   std::vector<Point> candidates_;
-  std::vector<Index> inside_;  ///< candidates
+  std::vector<Index> inside_;  ///< indices of the candidates in the ball
 };
 
 class Cut : public InCube {

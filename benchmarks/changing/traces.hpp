@@ -10,15 +10,14 @@
 
 namespace meshorder {
 
-/// A tetrahedral mesh after a step, in the trace's own numbers.
+/// A tetrahedral mesh after a step, numbered by the trace.
 struct TraceStep {
   std::vector<Point> points = {};
   std::vector<Index> corners = {};  ///< 4 of each tetrahedron
   /// The number of each point in the previous step; −1 for a new point. Empty: the same numbers.
   std::vector<Index> previous = {};
-  /// For each point of the previous step, the number of the point that a program now stores in its stead; −1
-  /// if no point replaces it and the points after it move up. Empty: the same numbers. All other points are
-  /// stored last.
+  /// For each point of the previous step, the number of the point that a program now stores in its place; −1:
+  /// it is removed, and the points after it move up. Empty: the same numbers. New points are stored last.
   std::vector<Index> successors = {};
 };
 
@@ -39,7 +38,7 @@ class Trace {
 /// Returns a trace of about `count` points:
 /// stir    points of a jittered lattice turn in rolls, at most 0.3 spacings a step
 /// churn   the same, and in each step 2 % of the points vanish and are replaced by points elsewhere
-/// refine  a ball with eight times as many points travels
+/// refine  a ball travels, which adds eight points for each point of the lattice
 /// cut     the tetrahedra along a plane are taken out, a few in each step
 /// dam     a dam break, the scenario `splash`
 /// Throws std::invalid_argument for other names.

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // parRSB, the spectral partitioner of Nek5000: `mpirun -n N peer-parrsb HEXAHEDRA N OUT` cuts hexahedra into
-// as many parts as there are ranks. HEXAHEDRA is a folder with corners.npy, eight vertices for each, and
-// coordinates.npy, three coordinates for each of these corners, as whole numbers.
+// as many parts as there are ranks. HEXAHEDRA is a folder with two files of whole numbers: corners.npy, the
+// eight vertices of each hexahedron, and coordinates.npy, the three coordinates of each of these corners.
 #include "parts.hpp"
 
 #include <mpi.h>

@@ -20,7 +20,7 @@ struct Range {
   std::int64_t end;
 };
 
-/// Returns this rank's share of `count` things: ranges as equal as can be.
+/// Returns this rank's share of `count` items; the shares' sizes differ by at most 1.
 Range own_range(std::int64_t count);
 
 /// Partitions, prints the processor seconds in user mode of all ranks together, and writes the parts.
@@ -29,7 +29,7 @@ Range own_range(std::int64_t count);
 /// @param partition  returns the parts of this rank's range
 void measure_parts(const std::string& path, const std::function<std::vector<int>()>& partition);
 
-/// Calls `solve` and prints errors on stderr; an error of one rank ends all.
+/// Calls `solve` and prints errors on stderr; an error on one rank ends all ranks.
 void run_on_ranks(const std::function<void()>& solve);
 
 }  // namespace peer

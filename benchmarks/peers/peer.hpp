@@ -70,7 +70,7 @@ inline Matrix laplacian(const CsrGraph& graph, double shift = 0) {
   return result;
 }
 
-/// Solves up to three times within a second, prints the fastest one's seconds and writes the vector.
+/// Solves up to three times, but not again after a second; prints the least seconds and writes the vector.
 template <class Solve>
 void measure(const std::filesystem::path& vector, const Solve& solve) {
   std::vector<double> values;

@@ -14,8 +14,8 @@ void ok(PetscErrorCode code) {
   if (code != 0) throw std::runtime_error("PETSc error " + std::to_string(code));
 }
 
-/// Returns a matrix of PETSc that uses the arrays of `matrix`. Constants are its near null space for
-/// multigrid.
+/// Returns a matrix of PETSc that uses the arrays of `matrix`, with the constants as multigrid's near null
+/// space.
 Mat petsc_matrix(peer::Matrix& matrix) {
   Mat result = nullptr;
   ok(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, matrix.size, matrix.size, matrix.offsets.data(),

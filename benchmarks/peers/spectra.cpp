@@ -19,9 +19,9 @@ namespace {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-constexpr double kShift = 1e-8;  // off the singular matrix, and far below λ₂
+constexpr double kShift = 1e-8;  // makes the matrix regular; far below λ₂
 
-/// (L + kShift)⁻¹ on the vectors that sum to 0, in the shape that Spectra asks for.
+/// (L + kShift)⁻¹ on the vectors that sum to 0, with the interface that Spectra needs.
 template <class Order>
 class Inverse {
  public:

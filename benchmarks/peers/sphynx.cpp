@@ -20,7 +20,7 @@ using Graph = Tpetra::CrsGraph<>;
 using Number = Graph::global_ordinal_type;
 using Adapter = Zoltan2::XpetraCrsGraphAdapter<Graph>;
 
-/// Reads this rank's rows, with the diagonal that Sphynx wants.
+/// Reads this rank's rows, and adds the diagonal that Sphynx needs.
 Teuchos::RCP<Graph> read_graph(const std::string& folder) {
   const std::vector<std::int64_t> offsets = peer::read_numbers(folder + "/offsets.npy");
   const std::vector<std::int64_t> neighbours = peer::read_numbers(folder + "/neighbours.npy");
@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
     const auto adapter = Teuchos::rcp(new Adapter(read_graph(argv[1]), 0));
     const auto parameters = Teuchos::rcp(new Teuchos::ParameterList());
     parameters->set("num_global_parts", std::atoi(argv[2]));
-    parameters->set("sphynx_skip_preprocessing", true);  // the only value that it implements
+    parameters->set("sphynx_skip_preprocessing", true);  // the only value that Sphynx implements
     parameters->set("sphynx_verbosity", 0);  // with more, version 13.2 mixes up its ranks' messages
     if (argc > 4) parameters->set("sphynx_preconditioner_type", std::string(argv[4]));
     peer::measure_parts(argv[3], [&] {

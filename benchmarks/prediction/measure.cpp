@@ -97,7 +97,7 @@ mo::CostModel machine_named(const std::string& name, int threads) {
   return name == "prior" ? mo::not_calibrated().model : mo::choose_machine(name).model;
 }
 
-/// Prints the order that `auto` takes for each kernel, and adds it to `orders`.
+/// Prints the order that `auto` chooses for each kernel, and adds it to `orders` if it is not there.
 void add_auto(const std::string& name, const mo::Mesh& mesh, const mo::CsrGraph& graph,
               std::vector<std::string>& orders) {
   for (const mo::Kernel kernel : mo::kKernels) {

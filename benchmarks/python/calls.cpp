@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Makes the C++ calls with which compare.py compares those from Python. `calls FOLDER` reads the arrays of a
+// Makes the C++ calls that compare.py compares with calls from Python. `calls FOLDER` reads the arrays of a
 // mesh and its graph from the folder's files offsets (64-bit integers), neighbours (32-bit), points (double)
 // and cells (32-bit, four a tetrahedron). For every line on stdin, CALL TIME|MEMORY, it makes the call and
-// prints its seconds, or by how many bytes the process grew.
+// prints the seconds it took, or by how many bytes the process grew.
 #include "../peak_memory.hpp"
 #include <meshorder/fiedler.hpp>
 #include <meshorder/order.hpp>

@@ -17,7 +17,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 const char* after_digits(const char* at, const char* last) { return std::find_if_not(at, last, is_digit); }
 
-/// Returns the end of the "inf", "infinity" or "nan" at the start of a text, or the start.
+/// Returns the end of the "inf", "infinity" or "nan" at the start of a text; `first` if there is none.
 const char* after_name(const char* first, const char* last) {
   for (const std::string_view name : {"infinity", "inf", "nan"}) {
     if (last - first >= std::ssize(name) && std::equal(name.begin(), name.end(), first, [](char a, char b) {
@@ -29,7 +29,7 @@ const char* after_name(const char* first, const char* last) {
   return first;
 }
 
-/// Returns the end of the decimal number at the start of a text, or the start.
+/// Returns the end of the decimal number at the start of a text; `first` if there is none.
 const char* after_number(const char* first, const char* last) {
   const char* const digits = first != last && *first == '-' ? first + 1 : first;
   if (const char* const end = after_name(digits, last); end != digits) return end;
@@ -68,7 +68,7 @@ std::to_chars_result put(char* first, char* last, std::string_view text) {
   return {std::copy(text.begin(), text.end(), first), std::errc()};
 }
 
-/// The shortest digits that read back as a number: digits · 10^exponent.
+/// The shortest decimal number that reads back as the same double: digits · 10^exponent.
 struct Shortest {
   std::string digits;
   int exponent = 0;

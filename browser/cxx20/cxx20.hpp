@@ -25,7 +25,7 @@ constexpr To bit_cast(const From& from) noexcept {
   return __builtin_bit_cast(To, from);
 }
 
-/// On the only thread: plain reads and writes.
+/// Plain reads and writes, since there is only one thread.
 template <class T>
 class atomic_ref {
  public:
@@ -58,7 +58,7 @@ constexpr auto operator<=>(const array<T, size>& a, const array<T, size>& b) {
   return std::lexicographical_compare_three_way(a.begin(), a.end(), b.begin(), b.end());
 }
 
-// Numbers as text, with the results of GCC's library.
+// Convert between numbers and text with the results of GCC's library.
 from_chars_result from_chars(const char* first, const char* last, double& value);
 from_chars_result from_chars(const char* first, const char* last, float& value);
 to_chars_result to_chars(char* first, char* last, double value);
@@ -67,7 +67,7 @@ to_chars_result to_chars(char* first, char* last, double value, chars_format for
 
 namespace ranges {
 
-/// Returns the comparison of two values after a projection.
+/// Returns a function that compares two values after a projection.
 template <class Compare, class Project>
 auto compared(Compare& compare, Project& project) {
   return [&](auto&& a, auto&& b) { return invoke(compare, invoke(project, a), invoke(project, b)); };

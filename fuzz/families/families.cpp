@@ -17,7 +17,7 @@ namespace {
 
 using Mutate = std::string (*)(std::string input, std::uint32_t seed);
 
-/// Changes an input in one of two ways.
+/// Changes an input by one of two mutations, which the seed chooses.
 template <Mutate One, Mutate Other>
 std::string either(std::string input, std::uint32_t seed) {
   return seed % 2 == 0 ? One(std::move(input), seed / 2) : Other(std::move(input), seed / 2);

@@ -5,25 +5,25 @@
 
 namespace meshorder::fuzz {
 
-// The checks of families; each is in the file of its subject.
+// The checks of the families; see Family::check.
 
-/// The files of a mesh (see `input_files` and `check_mesh_files`).
+/// Checks the files of a mesh (see `input_files` and `check_mesh_files`).
 void check_mesh_family(std::string_view family, Family::Bytes input);
-/// A folder `polyMesh`: `owner`, `neighbour`, `points` and `faces`, read as for an order of cells.
+/// Checks a folder `polyMesh`, as read to order its cells: `owner`, `neighbour`, `points` and `faces`.
 void check_openfoam(std::string_view family, Family::Bytes input);
-/// An array of NumPy as `--maps` reads it: a permutation, written and read again.
+/// Checks a NumPy array: written and read again, and read as a permutation, as by `--maps`.
 void check_npy(std::string_view family, Family::Bytes input);
 void check_scenario(std::string_view family, Family::Bytes input);
-/// Results of a study, written and read again.
+/// Checks the results of a study, which are written and read again.
 void check_results(std::string_view family, Family::Bytes input);
-/// A checkpoint, written and read again.
+/// Checks a checkpoint, which is written and read again.
 void check_checkpoint(std::string_view family, Family::Bytes input);
 void check_motion(std::string_view family, Family::Bytes input);
-/// Arrays that the bytes describe, given to the C interface: each call returns a status; a call that succeeds
-/// also returns a bijection.
+/// Calls the C interface with arrays that the bytes describe. Each call must return a valid status, and
+/// orders of a call that succeeds must be bijections.
 void check_graphs(std::string_view family, Family::Bytes input);
 void check_cells(std::string_view family, Family::Bytes input);
-/// Reads past the end of an array for one input of 5 bytes: a working fuzzer finds it.
+/// Reads past the end of an array if the input begins with "$Mesh": a working fuzzer finds this fault.
 void check_planted(std::string_view family, Family::Bytes input);
 
 // Mutations that know the structure of a format; see Family::mutate.

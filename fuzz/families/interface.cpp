@@ -21,7 +21,7 @@ constexpr std::array kSizes{4, 4, 8, 8, 4, 8};  // bytes of a number, by mo_type
 constexpr std::size_t kMostVertices = 48;
 constexpr std::size_t kMostNumbers = 160;
 
-/// Takes values from the front of an input; zeros after its end.
+/// Takes values from the front of an input, and zeros after the input's end.
 class Choices {
  public:
   explicit Choices(Family::Bytes bytes) : bytes_(bytes) {}
@@ -53,7 +53,7 @@ class Numbers {
   Numbers(mo_type type, const std::vector<std::int64_t>& values) : type_(type) {
     for (const std::int64_t value : values) add(value);
   }
-  /// `count` zeros.
+  /// Makes `count` zeros.
   Numbers(mo_type type, std::size_t count)
       : type_(type), bytes_(count * kSizes[static_cast<std::size_t>(type)]) {}
 
@@ -111,7 +111,7 @@ class Numbers {
 
 mo_type whole_type(Choices& from) { return static_cast<mo_type>(from.below(4)); }
 
-/// Returns numbers in base … base + count − 1, sometimes other numbers.
+/// Returns `size` numbers from base to base + count − 1, sometimes other numbers.
 std::vector<std::int64_t> members(Choices& from, std::size_t size, std::size_t count, std::int64_t base) {
   std::vector<std::int64_t> result(size);
   for (std::int64_t& value : result) {
@@ -124,7 +124,7 @@ std::vector<std::int64_t> members(Choices& from, std::size_t size, std::size_t c
   return result;
 }
 
-/// Returns offsets of rows that have `size` entries in all, sometimes other numbers.
+/// Returns the offsets of `rows` rows with `size` entries in total; sometimes one offset is any number.
 std::vector<std::int64_t> offsets(Choices& from, std::size_t rows, std::size_t size, std::int64_t base) {
   std::vector<std::int64_t> result{base};
   for (std::size_t r = 1; r < rows; ++r) {

@@ -16,7 +16,7 @@
 namespace meshorder::fuzz {
 namespace {
 
-// offsets in a checkpoint: magic (16 bytes), byte order and version (4 each), size (8), three fingerprints
+// offsets in a checkpoint's header: magic (16 bytes), byte order, version (4 each), size (8), fingerprints
 constexpr std::size_t kSizeAt = 24;
 constexpr std::size_t kFingerprintAt = 32;
 constexpr std::size_t kLeastCheckpoint = kFingerprintAt + sizeof(Fingerprint) + sizeof(std::uint32_t);

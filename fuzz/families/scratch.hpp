@@ -20,7 +20,7 @@ inline std::string_view text_of(Family::Bytes input) {
 /// folder is in the system's folder for temporary files, and is removed at the end of the process.
 std::filesystem::path scratch_file(const std::string& name, std::string_view content);
 
-/// Returns the result of `read()`; nothing if it throws an InputError.
+/// Returns the result of `read()`; empty if `read` throws InputError.
 template <class Read>
 auto accepted(const Read& read) -> std::optional<decltype(read())> {
   try {

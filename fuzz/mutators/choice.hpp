@@ -12,7 +12,7 @@ namespace meshorder::fuzz {
 
 inline constexpr std::size_t kTextRoom = 16;  ///< bytes by which a text within a file may grow
 
-/// The choices of a mutation.
+/// Makes the choices of a mutation at random.
 class Choice {
  public:
   explicit Choice(std::uint32_t seed) : random_(seed) {}

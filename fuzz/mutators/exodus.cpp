@@ -90,7 +90,7 @@ void copy_values(int file, const Variable& variable, const Variable& other) {
   (void)nc_put_var_double(file, variable.id, values.data());
 }
 
-/// Adds a copy of a variable under another name; the copy may have the dimensions of `shape`.
+/// Adds a copy of a variable under another name, with the dimensions of `shape`.
 void add_copy(int file, const Variable& variable, const std::string& name, const Variable& shape) {
   int id = 0;
   (void)nc_redef(file);
@@ -125,7 +125,7 @@ void exchange_dimensions(int file, Choice& choice) {
   if (one != other) exchange_names(file, one, name_of(one), other, name_of(other), nc_rename_dim);
 }
 
-/// Removes an attribute of a variable, or of the file, or changes its text.
+/// Removes an attribute of a variable or of the file, or changes the attribute's text.
 void change_attribute(int file, int variable, Choice& choice) {
   int count = 0;
   (void)nc_inq_varnatts(file, variable, &count);
@@ -196,7 +196,7 @@ std::string mutate_exodus(std::string input, std::uint32_t seed) {
   } catch (const InputError&) {
     return {};
   }
-  // not in memory: there libnetcdf leaks some files that it cannot open
+  // on disk: libnetcdf leaks some files that it cannot open in memory
   const std::filesystem::path path = scratch_file("mutated.nc", input);
   int file = 0;
   if (nc_open(path.c_str(), NC_WRITE, &file) != NC_NOERR) return {};

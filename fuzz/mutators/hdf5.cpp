@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
 
-/// Changes one number, or lets the engine change all bytes. The count stays the same.
+/// Changes one number, or lets the engine change all bytes. The number of entries stays the same.
 template <class Number>
 void change(std::vector<Number>& numbers, Choice& choice) {
   if constexpr (std::is_arithmetic_v<Number>) {
@@ -57,7 +57,7 @@ bool change_values(hdf5::File& file, Choice& choice) {
   return true;
 }
 
-/// Adds the paths of all objects in a group, and in its groups, to `paths`. Links may form cycles.
+/// Adds the paths of a group's objects to `paths`, up to a depth and a number, since links may form cycles.
 void add_objects(const hdf5::File& file, const std::string& group, int depth,
                  std::vector<std::string>& paths) {
   constexpr int kDeepest = 8;
@@ -83,8 +83,8 @@ std::string name_of_attribute(hid_t object, std::size_t place) {
   return name;
 }
 
-/// Gives one attribute of an object the type and values of the same attribute of `other`, removes it if
-/// `other` has no such attribute, or changes its bytes.
+/// Gives one attribute of an object the type and values of the attribute of `other` with its name, removes
+/// the attribute if `other` has no such attribute, or changes the attribute's bytes.
 void change_attribute(hid_t object, hid_t other, Choice& choice) {
   const auto count = static_cast<std::size_t>(std::max(H5Aget_num_attrs(object), 0));
   if (count == 0) return;
@@ -138,7 +138,7 @@ bool change_objects(hdf5::File& file, Choice& choice) {
     case 1:
       H5Ocopy(id, one.c_str(), id, near_name(other, choice).c_str(), H5P_DEFAULT, H5P_DEFAULT);
       break;
-    case 2:  // an object with several paths
+    case 2:  // the object gets a second path
       H5Ldelete(id, other.c_str(), H5P_DEFAULT);
       H5Lcreate_hard(id, one.c_str(), id, other.c_str(), H5P_DEFAULT, H5P_DEFAULT);
       break;
@@ -162,7 +162,7 @@ bool change_objects(hdf5::File& file, Choice& choice) {
 
 /// Returns the changed file; an empty text if there is nothing to change.
 std::string changed_file(const std::string& bytes, Choice& choice) {
-  // not in memory: the library computes a wrong checksum for images of some versions
+  // on disk: in memory, the library computes a wrong checksum for files of some versions
   const std::filesystem::path path = scratch_file("mutated.h5", bytes);
   hdf5::File file = hdf5::File::change(path, "input");
   const bool changed = choice.below(2) == 0 ? change_values(file, choice) : change_objects(file, choice);

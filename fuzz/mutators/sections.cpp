@@ -32,7 +32,7 @@ constexpr std::array<std::int64_t, 14> kLimits{0,
                                                std::numeric_limits<std::int64_t>::max(),
                                                std::numeric_limits<std::int64_t>::min()};
 
-/// Puts a number of 4 or 8 bytes into binary data, at a multiple of 4 bytes from its start.
+/// Puts a number of 4 or 8 bytes into binary data, at a multiple of 4 bytes after `begin`.
 void put_number(std::string& bytes, std::size_t begin, Choice& choice) {
   const std::size_t width = choice.below(2) == 0 ? 4 : 8;
   if (bytes.size() < begin + width) return;
@@ -47,8 +47,7 @@ void put_number(std::string& bytes, std::size_t begin, Choice& choice) {
   std::memcpy(bytes.data() + at, &value, width);
 }
 
-/// Returns the parts that begin with a line "$Name" that is not "$EndName"; before them, as the first part,
-/// the text before the first such line.
+/// Splits a text before each line, except the first, that begins with "$" but not with "$End".
 std::vector<std::string> sections_of(std::string_view text) {
   std::vector<std::string> sections(1);
   for (std::size_t at = 0; at < text.size();) {

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // XML files: elements are moved, copied and joined. The file stays valid XML and gets another meaning. Two
-// elements may refer to the same values, which changes of single bytes hardly ever achieve.
+// elements may refer to the same values, which a change of bytes hardly ever achieves.
 #include "fuzz/families/families.hpp"
 #include "fuzz/input_files.hpp"
 #include "fuzz/mutators/choice.hpp"

@@ -9,14 +9,14 @@
 namespace meshorder::models {
 
 /// Returns `$MESHORDER_CACHE`, else `$XDG_CACHE_HOME/meshorder`, else `~/.cache/meshorder`. Throws Error if
-/// none of the variables is set.
+/// neither these variables nor HOME are set.
 std::filesystem::path cache_folder();
 
 /// Makes a folder and its parents. Throws Error if that fails.
 void make_folder(const std::filesystem::path& folder);
 
-/// A lock for making one file in the cache: a second process waits in the constructor. Released at the end of
-/// the process at the latest.
+/// A lock for making one file in the cache: a second process waits in the constructor. The end of the process
+/// releases the lock at the latest.
 class MakingLock {
  public:
   /// Waits for the lock. `folder` must exist. Throws Error if the folder cannot be written.
@@ -31,8 +31,8 @@ class MakingLock {
   int file_;
 };
 
-/// An empty folder for unfinished files, `folder/.NAME.making`, to be used under the lock of that name.
-/// Removed by the destructor; the constructor removes files that an interrupted process left.
+/// An empty folder for unfinished files, `folder/.NAME.making`, to be used under the lock of that name. The
+/// destructor removes the folder; the constructor removes files that an interrupted process left.
 class ScratchFolder {
  public:
   ScratchFolder(const std::filesystem::path& folder, std::string_view name);

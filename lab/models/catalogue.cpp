@@ -54,7 +54,7 @@ constexpr std::array<Rule, 3> kRules{{
     {"torus", "a torus cut into tetrahedra, in any size, numbered along its rows", make_torus},
 }};
 
-/// Returns the number at the end of "grid-40", for the rule "grid".
+/// Returns 40 for "grid-40" and the rule "grid"; empty for a name without a size, or of another rule.
 std::optional<Index> size_in(std::string_view name, const Rule& rule) {
   if (!name.starts_with(rule.name) || name.size() == rule.name.size()) return std::nullopt;
   name.remove_prefix(rule.name.size());
@@ -124,8 +124,8 @@ std::string remedy_for_failure(std::string_view program) {
   return "are memory and disk space left?";
 }
 
-/// Runs a program that a model needs; its output goes to `folder/log`. Throws Error with the Debian package
-/// to install if the program is missing, and with its last line of output if it fails.
+/// Runs a program that a model needs; the output goes to `folder/log`. Throws Error with the Debian package
+/// to install if the program is missing, and with the last line of output if it fails.
 void run_tool(std::string_view model, std::string_view program, const std::vector<std::string>& arguments,
               const fs::path& folder) {
   const fs::path path = require_tool(model, program);

@@ -14,7 +14,7 @@ namespace meshorder {
 
 /// A tetrahedral mesh that meshorder can make by name.
 struct Model {
-  std::string name;            ///< "dragon"; "grid-20", with the size, if a procedural model is made
+  std::string name;            ///< "dragon"; "grid-20" for a procedural model that is made
   std::string description;     ///< for a list of models
   bool procedural = false;     ///< made in any size, without other programs
   std::filesystem::path path;  ///< the .node file, its .ele beside it; empty until it is made
@@ -23,10 +23,10 @@ struct Model {
 };
 
 /// Returns the folder of the models: `models` in `$MESHORDER_CACHE`, else in `$XDG_CACHE_HOME/meshorder`,
-/// else in `~/.cache/meshorder`. Throws Error if none of the variables is set.
+/// else in `~/.cache/meshorder`. Throws Error if neither these variables nor HOME are set.
 std::filesystem::path models_folder();
 
-/// Returns all models: the paper's and larger models, then the procedural models, each without a size and
+/// Returns all models: the paper's and larger models, then the procedural models, each first without a size,
 /// then in the sizes that are made. Reads only the first lines of files.
 std::vector<Model> list_models();
 
@@ -38,7 +38,7 @@ struct MakeOptions {
   /// take no size.
   std::optional<Index> size = {};
   bool force = false;  ///< make it again if it exists
-  /// Called with each step as it begins and the fraction of the time that has passed (below 0: unknown).
+  /// Called as each step begins, with the fraction of the time that has passed (below 0: unknown).
   std::function<void(std::string_view step, double fraction)> progress = {};
 };
 

@@ -129,7 +129,7 @@ void visit_record(File& file, Record& record) {
   }
 }
 
-/// Checks the header and leaves the scanner after it.
+/// Checks the header and the checksum; leaves the scanner after the header.
 void read_header(Scanner& file) {
   if (!file.all().starts_with(kMagic))
     file.fail_at_byte("is not a checkpoint", "give a file that simulate --checkpoint wrote");

@@ -11,17 +11,18 @@
 
 namespace meshorder {
 
-/// A vertex that is no corner of a tetrahedron, and the tetrahedron with which it moves. Its position at rest
-/// is the weighted mean of the corners; the weights add up to 1.
+/// A vertex that is not a corner of a tetrahedron, and the tetrahedron with which the vertex moves. The
+/// vertex's rest position is the weighted mean of the corners; the weights add up to 1.
 struct EmbeddedVertex {
   Index vertex = 0;
   std::array<Index, 4> corners{};
   std::array<double, 4> weights{};
 };
 
-/// Embeds the nodes on edges, on faces and inside of volume cells. Of the tetrahedra of its cells, each node
-/// takes the first of those in which it lies deepest. `simplices` are the mesh's tetrahedra. Vertices that
-/// belong to no volume cell, or only to flat volume cells, are not embedded. O(tetrahedra · nodes of a cell).
+/// Embeds the nodes on edges, on faces and inside volume cells. Each node is embedded in the tetrahedron of
+/// its cells where its least weight is greatest; the first of equal ones. `simplices` are the mesh's
+/// tetrahedra. Vertices that belong to no volume cell, or only to flat volume cells, are not embedded.
+/// O(tetrahedra · nodes of a cell).
 std::vector<EmbeddedVertex> embed_vertices(const Mesh& mesh, const Simplices& simplices);
 
 /// Computes positions and velocities of embedded vertices from the corners of their tetrahedra. `rest` are

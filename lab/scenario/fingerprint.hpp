@@ -26,7 +26,7 @@ std::uint64_t checksum_of(const MeshOrder& order);
 std::uint64_t checksum_of(const FluidOptions& options);
 /// Returns the checksum of a body that starts in that state.
 std::uint64_t checksum_of(const ImplicitOptions& options, const Body& body, const MotionState& start);
-/// Obstacles and precision are taken from `scenario`: `options` holds the obstacles only as opaque objects.
+/// Takes obstacles and precision from `scenario`, since `options` holds the obstacles as opaque objects.
 std::uint64_t checksum_of(const ProjectiveOptions& options, const ProjectiveScenario& scenario,
                           const ProjectiveBody& body, const MotionState& start);
 

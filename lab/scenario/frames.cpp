@@ -38,8 +38,7 @@ std::vector<DataArray> own_arrays(const Mesh& mesh, const MeshOrder& order) {
   return arrays;
 }
 
-/// Returns the metadata of the .vtu files, with compression; if the mesh was read from VTK, based on its
-/// metadata.
+/// Returns metadata for compressed .vtu files, based on the mesh's own metadata if it was read from VTK.
 std::shared_ptr<vtk::VtkMetadata> metadata_of(const Mesh& mesh) {
   const auto* const own = dynamic_cast<const vtk::VtkMetadata*>(mesh.format_metadata.get());
   auto metadata =

@@ -22,11 +22,11 @@ namespace meshorder {
 /// `original_vertex`, and the tetrahedra of the last step.
 class FrameWriter {
  public:
-  /// Makes the folder. Frames are those of the start and of every `every`-th step. Throws Error if the folder
-  /// cannot be made or written.
+  /// Makes the folder and writes the obstacles. Frames are due at the start and after every `every`-th step.
+  /// Throws Error if the folder cannot be made or written, InvalidArgument unless `every` is positive.
   FrameWriter(const Simulation& simulation, std::filesystem::path folder, Index every);
 
-  /// Lists the frames of the steps so far that an earlier run left in the folder.
+  /// Lists, of the recorded steps, the frames that an earlier run left in the folder.
   void resume_after(const MotionRecord& record);
 
   /// Returns whether a frame is due after `step`.
@@ -37,7 +37,7 @@ class FrameWriter {
   void write(MotionState state);
 
   [[nodiscard]] const std::filesystem::path& collection() const noexcept { return collection_; }
-  /// Notes on data of the mesh that the files could not hold.
+  /// Returns notes on data of the mesh that the files cannot hold.
   [[nodiscard]] const Notes& notes() const noexcept { return notes_; }
 
  private:

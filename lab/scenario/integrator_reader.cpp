@@ -15,8 +15,8 @@ enum class Method : std::uint8_t { backward_euler, admm, particle_fem };
 constexpr std::array kMethods{std::pair{Method::backward_euler, "backward-euler"},
                               std::pair{Method::admm, "admm"},
                               std::pair{Method::particle_fem, "particle-fem"}};
-constexpr std::array kContactSolvers{std::pair{true, "uzawa"}};  // the only one
-constexpr std::array kFluidModels{std::pair{true, "fluid"}};     // the only one
+constexpr std::array kContactSolvers{std::pair{true, "uzawa"}};  // the only solver
+constexpr std::array kFluidModels{std::pair{true, "fluid"}};     // the only model
 constexpr std::array kDuals{std::pair{true, "kept"}, std::pair{false, "reset"}};
 
 void read_count(const JsonValue& owner, std::string_view key, int most, int& count) {

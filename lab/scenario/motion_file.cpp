@@ -18,12 +18,12 @@
 namespace meshorder {
 namespace {
 
-/// Returns the header, whose length does not depend on the number of frames: it is written again at the end.
+/// Returns the header. Its length does not depend on the number of frames, so that `commit` can replace it.
 std::string header_of(Index frames, Index vertices) {
   return npy_header("<f4", std::array<std::int64_t, 3>{frames, vertices, 3});
 }
 
-/// Returns a message without the characters of numbers: equal for messages that differ only in numbers.
+/// Returns a message without the characters of numbers; messages that differ only in numbers become equal.
 std::string without_numbers(std::string_view message) {
   constexpr std::string_view kOfNumbers = "0123456789.,+-einfa";
   std::string result;
@@ -34,7 +34,7 @@ std::string without_numbers(std::string_view message) {
 
 constexpr std::int64_t kRow = 4 * sizeof(std::int32_t);
 
-/// Returns the header, whose length does not depend on the number of rows: it is written again at the end.
+/// Returns the header. Its length does not depend on the number of rows, so that `commit` can replace it.
 std::string surface_header(Offset rows) { return npy_header("<i4", std::array<std::int64_t, 2>{rows, 4}); }
 
 }  // namespace

@@ -36,17 +36,16 @@ class MotionFile {
 /// The content of a MotionFile.
 struct Motion {
   Index vertices = 0;
-  std::vector<std::vector<std::array<float, 3>>> frames;  ///< of each frame, the positions of all vertices
+  std::vector<std::vector<std::array<float, 3>>> frames;  ///< positions of all vertices in each frame
 };
 
 /// Reads a motion. Throws Error, which names the byte, for a file that is not an array of this form, is
 /// truncated or holds a number that is not finite. O(size of the file).
 Motion read_motion(const FilePath& path);
 
-/// Writes the surface of a fluid frame by frame, for a MotionFile of the same frames. The file is a NumPy
-/// array of little-endian 32-bit integers with a row for each triangle: the number of its frame, and its
-/// three vertices, anticlockwise as seen from outside. It appears when it is committed, completely or not at
-/// all.
+/// Writes the surface of a fluid in each frame of a MotionFile. The file is a NumPy array of little-endian
+/// 32-bit integers with a row for each triangle: the index of the frame, and the three vertices,
+/// anticlockwise as seen from outside. The file appears when it is committed, completely or not at all.
 class SurfaceFile {
  public:
   /// Throws Error if the file cannot be written.
@@ -63,12 +62,12 @@ class SurfaceFile {
   Offset rows_ = 0;
 };
 
-/// Reads the triangles of each of `frames` frames. Throws Error, with the byte, for a file that is not such
-/// an array, or names another frame or a vertex that is not 0 … vertices − 1.
+/// Reads the triangles of `frames` frames. Throws Error, with the byte, for a file that is not such an array,
+/// is truncated, or names a frame or vertex that does not exist.
 std::vector<std::vector<std::array<Index, 3>>> read_surfaces(const FilePath& path, std::size_t frames,
                                                              Index vertices);
 
-/// Timings and iteration counts of a step, and the body's shape after it. Its warnings are in
+/// Timings and iteration counts of a step, and the body's shape after it. The step's warnings are in
 /// MotionRecord::warnings.
 struct StepRecord {
   StepReport report;
@@ -77,7 +76,7 @@ struct StepRecord {
 
 /// A warning that one or more steps gave, in texts that differ at most in their numbers.
 struct WarningRecord {
-  std::string first;     ///< its first text
+  std::string first;     ///< text of its first occurrence
   Index first_step = 0;  ///< counted from 1
   Index count = 0;
 };
@@ -89,11 +88,11 @@ struct MotionRecord {
   std::vector<WarningRecord> warnings;
 };
 
-/// Adds a warning of a step and returns true. If a warning in the list differs only in its numbers,
-/// increments the count of that warning instead and returns false.
+/// Adds a warning of a step and returns true. If the list has a warning that differs at most in its numbers,
+/// increments that warning's count instead and returns false.
 bool add_warning(const std::string& warning, Index step, std::vector<WarningRecord>& warnings);
 
-/// Adds a step, with the shape distance and balance after it.
+/// Adds a step and its warnings, with the shape distance and balance after the step.
 void add(StepReport report, double shape_distance, const Balance& balance, MotionRecord& record);
 
 }  // namespace meshorder

@@ -10,10 +10,10 @@
 
 namespace meshorder {
 
-/// Returns how far a body is from a rigid motion of its rest shape: the largest distance, over `vertices`,
-/// between a vertex and its image under the rotation and translation of the least mean square (Kabsch 1976, A
-/// solution for the best rotation to relate two sets of vectors). In the unit of the points; 0 without
-/// vertices. O(vertices).
+/// Returns how far a body is from its rest shape: the largest distance, over `vertices`, between a vertex and
+/// its rest position moved by the best rotation and translation (least squares; Kabsch 1976, A solution for
+/// the best rotation to relate two sets of vectors). In the unit of the points; 0 without vertices.
+/// O(vertices).
 double distance_from_shape(std::span<const Point> rest, std::span<const Point> positions,
                            std::span<const Index> vertices);
 

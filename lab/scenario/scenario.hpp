@@ -25,14 +25,14 @@
 
 namespace meshorder {
 
-/// Describes vertices of a mesh independently of their numbering.
+/// A choice of a mesh's vertices that does not depend on their numbering.
 struct VertexChoice {
   enum class By : std::uint8_t {
     all,
     set,      ///< members of the set `name`, or the vertices of its cells
-    label,    ///< vertices, or the vertices of cells, with the value `label` in the array `name`; without a
-              ///< name, first in the label array of the vertices, then in that of the cells
-    box,      ///< vertices from `low` to `high`
+    label,    ///< vertices, or the vertices of cells, with the value `label` in the array `name`; an empty
+              ///< name: in the label array of the vertices, else in that of the cells
+    box,      ///< vertices in the box from `low` to `high`
     nearest,  ///< the vertex nearest to `low`
   };
   By by = By::all;
@@ -60,8 +60,8 @@ struct ScenarioMotion {
   Point velocity{};  ///< m/s
 };
 
-/// Initial positions and velocities of vertices. Without `at`, they keep their positions in the mesh; without
-/// `velocity`, they are at rest.
+/// Initial positions and velocities of vertices. Without `at`, the vertices keep their positions in the mesh;
+/// without `velocity`, they are at rest.
 struct ScenarioStart {
   VertexChoice on;
   std::optional<Point> velocity;  ///< m/s
@@ -105,7 +105,7 @@ struct Scenario {
   /// The folder that the mesh must lie in; empty if the user named the mesh.
   std::optional<std::filesystem::path> mesh_folder;
   double longest_side = 0;      ///< of the bounding box that the mesh is scaled to, m; 0: not scaled
-  double height = 0;            ///< the side of that box along y, if given instead of the longest side; m
+  double height = 0;            ///< side of that box along y, m; 0: `longest_side` counts
   std::optional<Point> bottom;  ///< position of the middle of the box's bottom, m
   std::string vertex_order = "original";
   std::string element_order = "original";
@@ -117,7 +117,7 @@ struct Scenario {
   std::string regions_by;  ///< the array whose groups are the regions (see `grouping_by`); may be empty
   std::vector<RegionMaterial> regions;
 
-  /// Its forces and prescribed motions are empty; `forces` and `motions` below describe them.
+  /// The options' forces and prescribed motions are empty; `forces` and `motions` below describe them.
   std::variant<ImplicitOptions, ProjectiveScenario, FluidScenario> integrator;
   std::vector<ScenarioStart> start;  ///< if two apply to a vertex, the later one wins
   std::vector<ScenarioForce> forces;
@@ -127,7 +127,7 @@ struct Scenario {
   std::vector<std::string> paper;  ///< paths, in the file, of the values that the paper gives
   std::vector<std::string> notes;
 
-  /// Returns the file at `path`, which is `mesh` itself or the path of the model of that name.
+  /// Returns the file at `path`: `mesh` itself or, if `mesh` is a model's name, the model's path.
   [[nodiscard]] FilePath mesh_file(const std::string& path) const {
     return mesh_folder ? FilePath::in(*mesh_folder, path) : FilePath(path);
   }
@@ -152,7 +152,7 @@ struct Scenario {
   }
 };
 
-/// Returns whether `mesh` is a model's name rather than a file's: it has no extension.
+/// Returns whether `mesh` is a model's name rather than a file's: it has no folder and no extension.
 bool names_a_model(std::string_view mesh);
 
 /// Returns the scenario that a file's text describes. `file` is its path: errors name it, and the mesh file

@@ -16,7 +16,7 @@ namespace {
 using Kind = ScenarioObstacle::Kind;
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
-constexpr int kAround = 96;  // corners of a circle
+constexpr int kAround = 96;  // number of corners of a circle
 
 /// Reads the points and triangles of a surface's file.
 std::pair<std::vector<Point>, std::vector<std::array<int, 3>>> read_surface(
@@ -31,7 +31,7 @@ std::pair<std::vector<Point>, std::vector<std::array<int, 3>>> read_surface(
   return {std::move(mesh.points), std::move(triangles)};
 }
 
-/// A point of a surface of revolution: distance from the axis, and height along it.
+/// A point on the profile of a surface of revolution: distance from the axis, height along the axis.
 struct ProfilePoint {
   double radius, height;
 };
@@ -52,7 +52,7 @@ std::vector<ProfilePoint> profile_of(const ScenarioObstacle& obstacle, double ex
   } else if (obstacle.kind == Kind::sphere) {
     append_arc(obstacle.radius, 0.0, std::numbers::pi, profile);
   } else {
-    // inside, round the rim, outside
+    // the profile follows the inside, the rim and the outside
     const double half = 0.5 * obstacle.thickness;
     const double opening = kRadiansPerDegree * obstacle.opening;
     append_arc(obstacle.radius - half, std::numbers::pi, opening, profile);
@@ -83,7 +83,7 @@ std::array<Point, 3> frame_about(const Point& axis) {
   return {along, across, cross(along, across)};
 }
 
-/// Appends the surface of a profile that turns about an axis through `center`.
+/// Appends the surface that a profile sweeps about an axis through `center`.
 void append_revolution(const std::vector<ProfilePoint>& profile, const Point& center, const Point& axis,
                        Mesh& mesh) {
   const auto [along, across, third] = frame_about(axis);

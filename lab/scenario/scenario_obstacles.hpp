@@ -10,7 +10,7 @@
 
 namespace meshorder {
 
-/// Makes the obstacle that a scenario describes. Throws Error, which names its file, for a surface that
+/// Makes the obstacle that a scenario describes. Throws Error, which names the file, for a surface that
 /// cannot be read, does not consist of triangles, or is not closed and oriented.
 std::shared_ptr<const Obstacle> obstacle_of(const ScenarioObstacle& obstacle);
 

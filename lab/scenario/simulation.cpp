@@ -30,7 +30,7 @@ std::vector<Index> used_vertices(const Simplices& simplices, Index vertex_count)
   return result;
 }
 
-/// Sets the time span of a selection. Its ends lie halfway between two steps, so that rounding cannot matter.
+/// Sets the time span of a selection. Its ends are halfway between steps, so that rounding cannot matter.
 void set_times(const StepRange& steps, double time_step, Selection& selection) {
   selection.from = (steps.first - 1.5) * time_step;
   if (steps.last < kMaxIndex) selection.until = (steps.last - 0.5) * time_step;
@@ -102,7 +102,7 @@ MotionState start_of(const Scenario& scenario, const Mesh& mesh, std::span<const
   return state;
 }
 
-/// Returns the law. The stiffness of springs and strain was given as Young's modulus with ν = 0, which is 2μ.
+/// Returns the law. For springs and strain, Young's modulus with ν = 0 is the stiffness, which is then 2μ.
 LocalLaw local_law_of(const SimplexMaterials& materials, LocalModel model, Offset simplices) {
   LocalLaw law;
   law.model = model;
@@ -159,7 +159,7 @@ void set_up_projective(Simplices simplices, const MotionState& start, Simulation
   }
 }
 
-/// Identifies how a fluid is ordered.
+/// Returns the checksum of the settings by which a fluid is ordered.
 std::uint64_t checksum_of(const FluidOrdering& ordering) {
   Checksum sum;
   sum.add_all(ordering.vertices);

@@ -26,19 +26,20 @@ struct Simulation {
   double setup_seconds = 0;  ///< for the body
 };
 
-/// Makes the fluid of a scenario; `mesh` has its particles at the start, and neither cells nor an order.
-/// Throws as the constructors of `Fluid` do.
+/// Makes the fluid of a scenario. Simulation::mesh has the particles at the start, without cells; the order
+/// is the identity. Throws as the constructors of `Fluid` do.
 Simulation set_up_fluid(Scenario scenario, const OrderOptions& ordering = {});
 
 Mesh mesh_at_start(const Scenario& scenario);
 
-/// Throws Error, which names `file`, unless the mesh has volume cells.
+/// Throws Error, which names `file`, if the mesh has no volume cells or has polyhedra.
 void require_volume_cells(const Mesh& mesh, const std::string& file);
 
 /// Scales, places and orders a mesh as the scenario says, finds the vertices of its loads and makes the body
-/// from the mesh's volume cells, cut into tetrahedra. `file` is the mesh's path, for errors. Throws Error,
-/// which names the file and the path in it, for sets, labels or regions that the mesh lacks; InvalidArgument
-/// for unknown methods. Takes O(size of the mesh), and the cost of the order.
+/// from the mesh's volume cells, cut into tetrahedra. `file` is the mesh's path, for errors. Throws Error for
+/// a mesh that cannot be simulated, and for sets, labels or regions that the mesh lacks (with the path in the
+/// scenario's file); InvalidArgument for unknown methods. Takes O(size of the mesh), and the cost of the
+/// order.
 Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, const OrderOptions& ordering = {});
 
 /// Does the same in a given order. Throws InvalidArgument if the order is of another mesh.

@@ -12,8 +12,8 @@
 
 namespace meshorder {
 
-/// Paths of the files in a study's folder. Results.json and the files in `data` suffice to resume a study and
-/// to make its report again; all other files are made from these.
+/// Paths of the files in a study's folder. `results.json` and the files in `data` suffice to resume a study
+/// and to make its report again; all other files are made from these.
 class StudyFolder {
  public:
   /// @param is_named  whether the user gave the folder, so that it may be a symbolic link
@@ -21,7 +21,7 @@ class StudyFolder {
       : root_(std::move(root)), named_(is_named ? root_ : root_.parent_path()) {}
 
   [[nodiscard]] const std::filesystem::path& root() const noexcept { return root_; }
-  /// Returns one of the paths below as a file to read or write; the user did not choose its name.
+  /// Returns one of the paths below as a file, which must lie in the named folder to be read.
   [[nodiscard]] FilePath file(const std::filesystem::path& path) const { return FilePath::in(named_, path); }
   [[nodiscard]] std::filesystem::path results() const { return root_ / "results.json"; }
   [[nodiscard]] std::filesystem::path data() const { return root_ / "data"; }

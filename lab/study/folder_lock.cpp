@@ -17,8 +17,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the number of the process that holds a lock on an open file, as Linux lists them; 0 if it is not
-/// found.
+/// Returns the id of the process that holds a lock on an open file, from Linux's list of locks; 0: none.
 long holder_of(int descriptor) {
   struct stat status {};
   if (::fstat(descriptor, &status) != 0) return 0;

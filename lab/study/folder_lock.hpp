@@ -8,11 +8,11 @@
 
 namespace meshorder {
 
-/// Keeps other processes from working on a study's folder, until it is destroyed or the process ends.
+/// Keeps other processes from working on a study's folder, until the lock is destroyed or the process ends.
 class FolderLock {
  public:
-  /// Throws InputError, which names the process, if another process holds the lock. If the file system has no
-  /// locks, the folder is not locked.
+  /// Throws InputError, which names the process if it is found, if another process holds the lock. If the
+  /// file system has no locks, the folder is not locked.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

@@ -19,11 +19,11 @@ namespace meshorder {
 namespace {
 
 constexpr Offset kMostExact = 1'000'000;
-/// Approximate share of the time for orders and simulated caches, if kernels are timed.
+/// Approximate share of the time that orders and simulated caches take, if kernels are timed.
 constexpr double kUntilTiming = 0.5;
 
-/// Returns the seconds of the call on the arena's threads; the best of three calls if a call takes less than
-/// a second. `prepare` runs before each call, and its time does not count.
+/// Returns the seconds that `call` takes on the arena's threads: the best of three calls; a call of a second
+/// or more is the last. `prepare` runs before each call, and its time does not count.
 template <class Prepare, class Call>
 double best_seconds(tbb::task_arena& threads, Prepare prepare, Call call) {
   constexpr double kLong = 1.0;

@@ -17,7 +17,7 @@
 
 namespace meshorder {
 
-/// An order of vertices and elements in a study: "vf-fiedler", "VF Fiedler".
+/// An order of vertices and elements in a study, such as "vf-fiedler".
 struct OrderingSpec {
   std::string name;      ///< unique in a study, of letters, digits and '-'
   std::string title;     ///< for tables and figures, as in the paper
@@ -31,9 +31,8 @@ struct OrderingSpec {
 struct KernelRecord {
   double predicted_ms = 0;  ///< for the model's machine: only ratios between orders matter
   double measured_ms = 0;   ///< best of interleaved rounds on one thread; 0: not measured
-  Offset accesses = 0;      ///< of cache lines in one run
-  /// Simulated misses of a repeated run, by cache hierarchy, as MeshRecord::hierarchies lists them, and
-  /// level.
+  Offset accesses = 0;      ///< to cache lines, in one run
+  /// Simulated misses of a repeated run: entry [h][l] is for level l of MeshRecord::hierarchies[h].
   std::vector<std::vector<Offset>> misses;
 
   bool operator==(const KernelRecord&) const = default;
@@ -62,12 +61,12 @@ struct NamedCaches {
 
 /// Measurements and predictions on a mesh in the study's orders.
 struct MeshRecord {
-  std::string name;  ///< unique in a study: the model's, or the file's without its extension
-  std::string file;  ///< in the study's folder
+  std::string name;  ///< unique in a study: of the model, the fluid, or the file without extension
+  std::string file;  ///< relative to the study's folder
   Index vertices = 0;
   Offset tetrahedra = 0;
   Offset edges = 0;     ///< of the vertex graph
-  Index span_bin = 50;  ///< the paper's; wider for more than 200,000 vertices
+  Index span_bin = 50;  ///< bin width of span histograms, see `span_bin_width`
   std::vector<NamedCaches> hierarchies;
   std::vector<MeshOrderRecord> orders;  ///< the computed orders, in the sequence of StudyResults::orderings
   std::string verdict;                  ///< what reordering is worth, a sentence; may be empty
@@ -93,11 +92,11 @@ struct RunRecord {
   bool operator==(const RunRecord&) const = default;
 };
 
-/// Seconds of a scenario's steps in one order, over its runs.
+/// Seconds of all steps of a scenario in one order, summarised over the runs.
 struct TimeSummary {
   double mean = 0;
   double deviation = 0;    ///< standard deviation of the runs' sums (n − 1); 0 for one run
-  double undisturbed = 0;  ///< sum over the steps of each step's fastest time
+  double undisturbed = 0;  ///< sum of each step's fastest time over the runs
 
   bool operator==(const TimeSummary&) const = default;
 };
@@ -105,11 +104,11 @@ struct TimeSummary {
 /// An order compared with the reference, by turns that were measured side by side.
 struct Speedup {
   double saved_seconds = 0;              ///< the reference's mean minus this order's
-  double percent = 0;                    ///< of the reference's mean, as in the paper's Table 4
+  double percent = 0;                    ///< saved share of the reference's mean, as in the paper's Table 4
   double low = 0, high = 0;              ///< 95 % confidence interval of `percent`
   bool beyond_noise = false;             ///< the interval does not contain 0
   double undisturbed_percent = 0;        ///< like `percent`, from the undisturbed times
-  std::optional<Index> break_even_step;  ///< first step by whose end the order's cost is saved; none: never
+  std::optional<Index> break_even_step;  ///< first step after which the order's cost is saved; empty: never
 
   bool operator==(const Speedup&) const = default;
 };
@@ -131,12 +130,12 @@ struct ScenarioRecord {
   std::string material;     ///< "corotational", "springs"
   std::string precision;    ///< "double" or "single"; empty in results of earlier versions
   std::string mesh;         ///< MeshRecord::name
-  std::string fingerprint;  ///< of the mesh, and of the parameters in the first order
+  std::string fingerprint;  ///< of the mesh and, in the first order, of the parameters
   Index steps = 0;
-  Index turn = 0;                  ///< number of steps of one order that were timed before the next order's
+  Index turn = 0;                  ///< steps that were timed in one order before the next order's turn
   bool interleaved = true;         ///< false: one order after another, since memory cannot hold all
   bool fixed_addresses = false;    ///< every order had its arrays at the same addresses
-  std::vector<int> processors;     ///< to which the threads were bound; empty: not bound
+  std::vector<int> processors;     ///< that the threads were bound to; empty: not bound
   std::vector<Index> frame_steps;  ///< steps after which a frame was kept; the first is 0
   std::vector<ScenarioOrderRecord> orders;
 
@@ -167,8 +166,8 @@ auto find_named(Records& records, std::string_view name) -> decltype(records.dat
   return nullptr;
 }
 
-/// Returns a mesh or scenario record's entry for an order; nullptr if it was not computed or no run is
-/// finished.
+/// Returns the entry for an order in a mesh's or scenario's record; nullptr if there is none, or it has no
+/// runs.
 template <class Record>
 auto find_order(const Record& record, std::string_view ordering) -> decltype(record.orders.data()) {
   for (auto& order : record.orders) {

@@ -9,8 +9,9 @@
 
 namespace meshorder {
 
-/// A key of results.json and its member. Unless `free`, a text must not be empty and a number not negative.
-/// An `optional` key was not written by earlier versions: where it is missing, the member keeps its value.
+/// A key of a record's JSON object, and the record's member for its value. Unless `free`, a text must not be
+/// empty and a number not negative. An `optional` key was not written by earlier versions: where it is
+/// missing, the member keeps its value.
 template <class Record, class Value>
 struct Field {
   std::string_view key;

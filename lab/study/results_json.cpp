@@ -70,14 +70,14 @@ class Writer {
   std::string_view key_;
 };
 
-// The checks of records read from JSON throw an Error that names the place in `value`.
+// Checks of records that were read from JSON. They throw an Error that names the faulty place in `value`.
 
 /// Throws unless the number at `key` is 1 or more.
 void expect_positive(std::int64_t number, const JsonValue& value, std::string_view key) {
   if (number < 1) throw value[key].error("is 0", "give 1 or more");
 }
 
-/// Returns the names of the records of a list. Throws if a name occurs twice or cannot be in a file's name.
+/// Returns the names of a list's records. Throws if a name occurs twice or cannot be part of a file name.
 template <class Record>
 std::set<std::string> unique_names(const std::vector<Record>& records, std::string Record::*name,
                                    const JsonValue& value, std::string_view list, std::string_view key) {
@@ -115,7 +115,7 @@ void expect_misses(const std::vector<NamedCaches>& hierarchies, const JsonValue&
   }
 }
 
-/// Throws unless the levels are ascending multiples of a line.
+/// Throws unless the sizes of the levels are ascending multiples of a cache line's size.
 void check_record(const Caches& caches, const JsonValue& value) {
   Offset before = 0;
   for (const Offset bytes : caches.level_bytes) {
@@ -126,16 +126,16 @@ void check_record(const Caches& caches, const JsonValue& value) {
   }
 }
 
-/// Throws unless `span_bin` is positive, every order occurs once, and misses are given for every hierarchy
-/// and level, or for none.
+/// Throws unless `span_bin` is positive, no order occurs twice, and each kernel has misses for every
+/// hierarchy and level, or for none.
 void check_record(const MeshRecord& mesh, const JsonValue& value) {
   expect_positive(mesh.span_bin, value, "span_bin");
   unique_names(mesh.orders, &MeshOrderRecord::ordering, value, "orders", "ordering");
   for (const JsonValue& order : value["orders"].items()) expect_misses(mesh.hierarchies, order);
 }
 
-/// Throws unless every order occurs once, every run has the scenario's steps, and there is a difference for
-/// every frame, or none.
+/// Throws unless numbers and precision are valid, no order occurs twice, each run has all steps, and each
+/// order has a difference for every frame, or none.
 void check_record(const ScenarioRecord& scenario, const JsonValue& value) {
   expect_positive(scenario.steps, value, "steps");
   expect_positive(scenario.turn, value, "turn");
@@ -150,7 +150,7 @@ void check_record(const ScenarioRecord& scenario, const JsonValue& value) {
   }
 }
 
-/// Throws unless names are unique and every name that is referred to exists.
+/// Throws unless `runs` and `threads` are positive, names are unique, and all references to names are valid.
 void check_record(const StudyResults& results, const JsonValue& value) {
   expect_positive(results.runs, value, "runs");
   expect_positive(results.threads, value, "threads");
@@ -175,7 +175,7 @@ void check_record(const Record& /*record*/, const JsonValue& /*value*/) {}
 /// Converts JSON to records.
 class Reader {
  public:
-  /// Reads an object with the record's keys. It may have the keys `also`, which the caller has read.
+  /// Reads an object with the record's keys. Keys in `also`, which the caller has read, are allowed.
   template <Described Record>
   static void read(const JsonValue& value, Record& record, bool /*free*/ = false,
                    std::vector<std::string_view> also = {}) {
@@ -212,7 +212,7 @@ class Reader {
   static void read(const JsonValue& value, std::vector<Value>& values, bool free) {
     for (const JsonValue& item : value.items()) read(item, values.emplace_back(), free);
   }
-  /// Reads the number of a step, counted from 1.
+  /// Reads the number of a step, counted from 1; empty for null.
   static void read(const JsonValue& value, std::optional<Index>& step, bool /*free*/) {
     if (!value.is_null()) step = static_cast<Index>(value.whole(1, kMaxIndex));
   }

@@ -16,8 +16,8 @@ nlohmann::ordered_json to_json(const StudyResults& results);
 /// Writes the file, completely or not at all. Throws Error if it cannot be written.
 void write_results(const StudyResults& results, const FilePath& path);
 
-/// Reads results that write_results wrote, the same bit for bit. Throws Error, which names the path in the
-/// file, for values that are missing, unknown or out of range.
+/// Reads results that write_results wrote; their values are the same bit for bit. Throws Error, which names
+/// the path in the file, for values that are missing, unknown or out of range.
 StudyResults read_results(const FilePath& path);
 
 }  // namespace meshorder

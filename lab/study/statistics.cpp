@@ -14,8 +14,7 @@ namespace meshorder {
 namespace {
 
 constexpr double kConfidence = 0.95;
-/// Ratio of the variance of the runs' sums to the variance that turns explain. Above this ratio, whole runs
-/// differ.
+/// Whole runs differ if their sums' variance exceeds the variance that turns explain by this factor.
 constexpr double kRunsDiffer = 3.0;
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
@@ -62,7 +61,7 @@ std::vector<double> differences(const std::vector<double>& from, const std::vect
   return result;
 }
 
-/// Returns half the interval's width in seconds, from the savings of each of two or more runs in every turn.
+/// Returns half the interval's width in seconds, from the savings in each turn of two or more runs.
 double half_width_of_runs(const std::vector<std::vector<double>>& saved_by_run) {
   const auto runs = static_cast<double>(saved_by_run.size());
   double of_turns = 0;
@@ -76,7 +75,7 @@ double half_width_of_runs(const std::vector<std::vector<double>>& saved_by_run) 
   return student_t(index_size(saved_by_run.front()) * more_runs, kConfidence) * std::sqrt(of_turns / runs);
 }
 
-/// Returns half the interval's width in seconds for one run, from its turns in an order and in the reference.
+/// Returns half the interval's width in seconds for one run, from the seconds of its turns in both orders.
 double half_width_of_ratio(const std::vector<double>& turns, const std::vector<double>& reference) {
   const double ratio = sum(turns) / sum(reference);
   double squares = 0;

@@ -8,7 +8,7 @@
 
 namespace meshorder {
 
-/// Returns the times of the runs of one order; all 0 without runs. Throws InvalidArgument if they differ in
+/// Returns the summary of one order's runs; all 0 without runs. Throws InvalidArgument if the runs differ in
 /// length. O(steps · runs).
 TimeSummary summary_of(const std::vector<RunRecord>& runs);
 
@@ -16,13 +16,13 @@ TimeSummary summary_of(const std::vector<RunRecord>& runs);
 /// may be shorter. Differences between runs of the same turn are noise; differences between turns are
 /// physics.
 ///
-/// With d[r][b] the seconds that run r saves in turn b, B turns and R runs, the saving is Σ_b mean_r d[r][b];
-/// its variance is estimated by Σ_b s²_b / R, s²_b the variance of d[·][b] over the runs, and the interval is
-/// Student's with B (R − 1) degrees of freedom. A machine that is slower for a while does not matter: both
-/// orders of a turn were measured side by side. A whole run may differ, for instance by its memory pages.
-/// This is assumed if the variance of the runs' sums is more than three times the variance that the turns
-/// explain, which happens by chance in one case of twenty. The interval is then that of the R sums, with R −
-/// 1 degrees, which is wider.
+/// Let d[r][b] be the seconds that run r saves in turn b, of R runs and B turns. The saving is Σ_b mean_r
+/// d[r][b]. Its variance is estimated by Σ_b s²_b / R, where s²_b is the variance of d[·][b] over the runs.
+/// The interval is Student's with B (R − 1) degrees of freedom. A machine that is slower for a while does not
+/// matter: both orders of a turn were measured side by side. A whole run may differ, for instance by its
+/// memory pages. Runs are assumed to differ if the variance of their sums is more than three times the
+/// variance that the turns explain, which happens by chance in one case of twenty. The interval is then that
+/// of the R sums, with R − 1 degrees, which is wider.
 ///
 /// One run cannot separate noise from physics. Its interval comes from the ratio of the orders' seconds,
 /// which is assumed to be the same in all turns (Cochran 1977, Sampling Techniques, 6.3), with B − 1 degrees,
@@ -30,21 +30,21 @@ TimeSummary summary_of(const std::vector<RunRecord>& runs);
 /// beyond the noise.
 ///
 /// Percentages refer to the reference's mean seconds, whose own noise is of second order and neglected.
-/// `order_seconds` is the order's cost; the reference costs nothing. The break-even step is the first at
-/// which the means of the measured steps so far have saved that cost; empty if there is no such step. Throws
+/// `order_seconds` is the order's cost; the reference costs nothing. The break-even step is the first after
+/// which the measured steps have, by their means, saved that cost; empty if there is no such step. Throws
 /// InvalidArgument if the runs differ in number or length, if there are no runs, or if `turn` is not
 /// positive. O(steps · runs).
 Speedup speedup_of(const std::vector<RunRecord>& runs, const std::vector<RunRecord>& reference, Index turn,
                    double order_seconds);
 
-/// Computes summaries, speedups and break-even steps of all scenarios from the runs. The orders' costs are
-/// those of the scenario's mesh, or 0 for a fluid, whose steps contain them. An order of unknown cost never
-/// breaks even. If an order and the reference differ in their number of runs, the first runs are compared.
-/// Scenarios without runs of the reference get summaries only.
+/// Computes summaries, speedups and break-even steps of all scenarios from the runs. An order's cost is that
+/// on the scenario's mesh; 0 for a fluid, whose steps include it. An order of unknown cost never breaks even.
+/// If an order and the reference differ in their number of runs, only the first runs that both have are
+/// compared. Scenarios without runs of the reference get summaries only.
 void summarise(StudyResults& results);
 
 /// Returns the t for which a variable of Student's distribution lies between −t and t with the given
-/// probability: 12.706 for (1, 0.95), 1.96 in the limit. Uses the finite series for whole degrees of freedom
+/// probability: 12.706 for (1, 0.95), 1.96 for (∞, 0.95). Uses the finite series for whole degrees of freedom
 /// (Abramowitz and Stegun 1964, Handbook of Mathematical Functions, 26.7.3 and 26.7.4), and inverts it by
 /// bisection. Throws InvalidArgument for less than one degree or a probability that is not between 0 and 1.
 /// O(degrees).

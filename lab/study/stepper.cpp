@@ -23,7 +23,7 @@
 namespace meshorder {
 namespace {
 
-/// Reads an order; without a file it is the identity.
+/// Reads an order; returns the identity for an empty path.
 Permutation order_of(const std::string& path, Index count, const std::string& what) {
   if (path.empty()) return Permutation::identity(count);
   return read_permutation(FilePath::derived(path), count, what);
@@ -128,7 +128,7 @@ class Stepping {
   std::optional<SurfaceFile> surfaces_;  ///< of a fluid
 };
 
-/// Returns a message in one line; bytes that are no UTF-8 become U+FFFD.
+/// Returns a message in one line; bytes that are not UTF-8 become U+FFFD.
 std::string line_of(const nlohmann::json& message) {
   return message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -160,7 +160,7 @@ void serve_steps(std::istream& questions, std::ostream& answers) {
 
 namespace {
 
-/// Returns the arguments of a child, which reads its mesh under the limits of this process.
+/// Returns the child's arguments, which give it this process's limits for reading a mesh.
 std::vector<std::string> arguments_for(int threads) {
   std::vector<std::string> arguments{"serve-steps", "--threads", std::to_string(threads)};
   if (const MemoryLimit limit = memory_limit(); limit.is_given) {

@@ -18,23 +18,23 @@
 
 namespace meshorder {
 
-// The messages between a study and the processes that simulate for it, one JSON object a line. The process
-// answers each question, or answers {"error": …} and ends.
+// The messages between a study and the processes that simulate for it, one JSON object on each line. The
+// process answers each question, or answers {"error": …} and ends.
 
 /// What to simulate.
 struct StepperTask {
   std::string scenario = {};         ///< a name or a file
-  std::string mesh = {};             ///< a file, instead of the scenario's own
+  std::string mesh = {};             ///< a file; it need not be the scenario's own
   std::string vertex_order = {};     ///< file of the NumPy array old_to_new; empty: the mesh's own order
   std::string cell_order = {};       ///< the same for cells
   std::vector<int> processors = {};  ///< to bind the process to; empty: not bound
-  // of a fluid, which has no mesh and no files of orders
+  // only for a fluid, which has no files of a mesh or of orders
   std::string vertex_method = {};   ///< "auto": a Reorderer decides when to order; others: see FluidOrdering
-  std::string element_method = {};  ///< in each step
-  double spacing = 0;               ///< of its particles, m
+  std::string element_method = {};  ///< of the tetrahedra, in each step
+  double spacing = 0;               ///< of the particles, m
 };
 
-/// Describes a body that is ready to be simulated.
+/// The answer to a StepperTask: describes the body that is ready to be simulated.
 struct StepperReady {
   Index vertices = 0;
   Offset tetrahedra = 0;
@@ -42,16 +42,16 @@ struct StepperReady {
   double setup_seconds = 0;
   double step_seconds = 0;       ///< of the warm-up step, which is undone
   Offset bytes = 0;              ///< memory of the body
-  std::string fingerprint;       ///< of the mesh, and of the parameters in this order
+  std::string fingerprint;       ///< of the mesh and, in this order, of the parameters
   bool fixed_addresses = false;  ///< address space randomisation is off
 };
 
-/// Asks for steps.
+/// A request for steps.
 struct StepperTurn {
   Index steps = 0;
   std::string frames;         ///< file for the motion, in the mesh's own order; empty: no frames
-  Index frame_every = 1;      ///< a frame at the start and after every so many steps
-  bool last = false;          ///< completes the file of the frames
+  Index frame_every = 1;      ///< steps from one frame to the next; the first is at the start
+  bool last = false;          ///< the last turn: completes the files
   std::string surfaces = {};  ///< file for the surface of a fluid in the frames; empty: none
 };
 
@@ -125,21 +125,20 @@ Value read_message(const nlohmann::json& message) {
 }
 
 /// Serves a study over a pair of streams: reads a StepperTask, sets up the body, runs a warm-up step and
-/// undoes it; then simulates and times turn after turn until the input ends. An error is the last answer.
+/// undoes it; then simulates and times turn after turn until the input ends. The last answer may be an error.
 void serve_steps(std::istream& questions, std::ostream& answers);
 
-/// A simulation in a new process. Where the system allows it, the memory of all such processes is at the same
-/// addresses.
+/// A simulation in a new process. Where the system allows it, the process has no address space randomisation.
 class Stepper {
  public:
-  /// Starts `program`, which is meshorder, and waits until the body is ready. Throws Error with the process's
-  /// message.
+  /// Starts `program`, which is meshorder-lab, and waits until the body is ready. Throws Error with the
+  /// process's message.
   Stepper(const std::filesystem::path& program, int threads, const StepperTask& task);
 
   [[nodiscard]] const StepperReady& ready() const noexcept { return ready_; }
 
-  /// Runs the steps of a turn and waits for them. The record has neither the time at which the run began nor
-  /// the set-up and memory of the body. Throws Error with the process's message.
+  /// Runs the steps of a turn and waits for them. The record has no values for `began`, `setup_seconds` and
+  /// `bytes`. Throws Error with the process's message.
   RunRecord take(const StepperTurn& turn);
 
  private:

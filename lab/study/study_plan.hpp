@@ -19,8 +19,8 @@ std::vector<OrderingSpec> paper_orderings();
 /// Returns the paper's orderings and the ordering that `meshorder order` makes.
 std::vector<OrderingSpec> study_orderings();
 
-/// Returns the study's ordering of that name, or an ordering by methods given as VERTICES/ELEMENTS. Throws
-/// InvalidArgument for any other name.
+/// Returns the study's ordering of that name, or for a name VERTICES/ELEMENTS the ordering by these two
+/// methods. Throws InvalidArgument for any other name.
 OrderingSpec study_ordering(std::string_view name);
 
 /// Options of a study.
@@ -33,15 +33,15 @@ struct StudyPlan {
   int runs = 3;
   int threads = 1;
   std::optional<Index> steps;              ///< instead of the scenarios' own steps
-  std::optional<double> scenario_seconds;  ///< or for one run in all orders; at least 8 steps
-  double kernel_seconds = 12;              ///< time for running kernels on each mesh
+  std::optional<double> scenario_seconds;  ///< limits one run in all orders; at least 8 steps
+  double kernel_seconds = 12;              ///< time for running kernels on each mesh, s
   bool pin = true;                         ///< bind threads to processors
   OrderOptions ordering = {};
 };
 
-/// Returns the mesh of a study's size for a scenario whose own mesh is `mesh`: `mesh` itself for "paper", the
-/// armadillo with 291,000 vertices for "300k", a lattice with 1.9 million vertices for "2m". Throws
-/// InvalidArgument for any other size.
+/// Returns a scenario's mesh in a study of that size: the scenario's own, `mesh`, for "paper", the armadillo
+/// with 291,000 vertices for "300k", a lattice with 1.9 million vertices for "2m". Throws InvalidArgument for
+/// any other size.
 std::string mesh_of_size(std::string_view size, const std::string& mesh);
 
 /// Returns the names of the built-in scenarios that a study runs: those of the paper's simulators, and the
@@ -49,7 +49,7 @@ std::string mesh_of_size(std::string_view size, const std::string& mesh);
 std::vector<std::string> study_scenarios();
 
 /// Returns the spacing (m) of a fluid's particles in a study of that size: the fluid's own for "paper", else
-/// the spacing for about 300,000 or two million particles. Throws InvalidArgument as `mesh_of_size`.
+/// the spacing for about 300,000 or two million particles. Throws InvalidArgument for any other size.
 double spacing_of_size(std::string_view size, const FluidOptions& options);
 
 /// Returns whether a scenario fits in memory at that size. ADMM's factored matrix of a solid with two million

@@ -119,7 +119,7 @@ class Study {
     subjects_.push_back(std::move(subject));
   }
 
-  /// Makes the mesh and its orders and runs the first step: errors appear before the long runs begin.
+  /// Makes the mesh and its orders and runs the first step, so that errors appear before the long runs.
   void prepare(Subject& subject, const Share& share) {
     subject.mesh_path = subject.scenario.mesh;
     if (!subject.scenario.is_fluid() && names_a_model(subject.mesh_path)) {
@@ -138,7 +138,7 @@ class Study {
     if (const ScenarioRecord* const begun = store_.find(subject.scenario.name)) go_on_with(*begun, subject);
   }
 
-  /// Divides further runs of a scenario into the same turns as its first run.
+  /// Divides further runs into the turns of the first run. Throws Error if the simulation is another one.
   void go_on_with(const ScenarioRecord& begun, Subject& subject) const {
     const bool may_have_other_steps = plan_.scenario_seconds && !plan_.steps;
     if (begun.fingerprint != subject.body.fingerprint ||
@@ -154,7 +154,7 @@ class Study {
     Mesh mesh = subject.scenario.is_fluid() ? mesh_at_start(subject.scenario)
                                             : read_mesh_from(subject.scenario.mesh_file(subject.mesh_path));
     require_volume_cells(mesh, subject.mesh_path);
-    mesh.cell_blocks.clear();  // orders are compared, not a file's layout
+    mesh.cell_blocks.clear();  // blocks are a file's layout and would restrict the cells' order
     MeshStudyOptions options;
     options.ordering = plan_.ordering;
     options.threads = plan_.threads;
@@ -184,7 +184,7 @@ class Study {
            subject.body.step_seconds * static_cast<double>(plan_.orderings.size());
   }
 
-  /// Runs the missing runs of a scenario.
+  /// Runs the missing runs of a scenario. Returns false if stopped.
   bool run_all(const Subject& subject, const Share& share) {
     const int first = store_.runs_done(subject.scenario.name);
     const double count = plan_.runs - first;
@@ -223,7 +223,7 @@ class Study {
     return true;
   }
 
-  /// Returns the record of a scenario after its first run, without times, from the motions in each order.
+  /// Returns the record of a scenario after its first run, with the compared motions but without runs.
   [[nodiscard]] ScenarioRecord record_of(const Subject& subject, const std::vector<Scratch>& motions) const {
     ScenarioRecord record = store_.new_record(subject.scenario);
     record.mesh = subject.mesh;
@@ -239,7 +239,7 @@ class Study {
     return record;
   }
 
-  /// Compares the motions and keeps the first order's, for the page.
+  /// Compares the motions with the first order's; keeps the latter and the obstacles for the page.
   void compare_motions(const Subject& subject, const std::vector<Scratch>& motions,
                        ScenarioRecord& record) const {
     const StudyFolder& folder = store_.folder();

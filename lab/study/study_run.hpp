@@ -12,24 +12,24 @@ namespace meshorder {
 
 /// Callbacks of a study.
 struct StudyObserver {
-  /// Called at the start of each stage, with its share of the whole.
+  /// Called when a stage begins or advances; the rest of the stage is `from` … `to` of the whole, 0 … 1.
   std::function<void(const std::string& what, double from, double to)> stage = [](auto&&...) {};
   std::function<void(const std::string& message)> note = [](auto&&...) {};
-  /// Called after each turn. If it returns true the study stops and loses its unfinished runs.
+  /// Called after each mesh and each turn. If it returns true, the study stops and loses its unfinished runs.
   std::function<bool()> stop = [] { return false; };
 };
 
 /// Runs a study, or the missing part of it, and updates results.json in the folder after each mesh and after
 /// each run of a scenario in all orders. Returns true if it finished, false if it was stopped.
 ///
-/// The orders of a mesh are computed once. In each run of a scenario every order has a fresh process of
-/// `program`, which is meshorder, on the same processors and with its memory at the same addresses. The
-/// processes take turns of about a second. In each run another order begins, so that changes of the machine's
-/// speed affect all orders alike. If memory cannot hold all orders they run one after another. The first run
-/// stores frames of the motion and compares them between the orders.
+/// The orders of a mesh are computed once. In each run of a scenario, every order has a fresh process of
+/// `program`, which is meshorder-lab, on the same processors and, where possible, without address space
+/// randomisation. The processes take turns of about a second. In each run, another order begins, so that
+/// changes of the machine's speed affect all orders alike. If memory cannot hold all orders, they run one
+/// after another. The first run stores frames of the motion and compares them between the orders.
 ///
-/// Throws Error if the folder holds another study, naming what differs, and for errors in scenarios and
-/// meshes.
+/// Throws Error, which says what differs, if the folder holds another study; throws Error or InvalidArgument
+/// for errors in scenarios and meshes.
 bool run_study(const StudyPlan& plan, const StudyFolder& folder, const std::filesystem::path& program,
                const StudyObserver& observer);
 

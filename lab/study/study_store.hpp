@@ -13,17 +13,17 @@
 
 namespace meshorder {
 
-/// The results of a study in its folder; results.json is complete after every call.
+/// The results of a study in its folder. `keep` updates results.json, completely or not at all.
 class StudyStore {
  public:
-  /// Makes the folder and begins a study in it, or resumes the study in it. Throws Error if the folder cannot
-  /// be made, if its study has another processor, build, mesh size, number of threads, reference or
-  /// orderings, or if another process works on it.
+  /// Makes the folder and begins a study, or resumes the folder's study. Throws Error if the folder cannot be
+  /// made or written, if another process works on it, or if its study has another processor, build, mesh
+  /// size, number of threads, reference or orderings.
   StudyStore(const StudyPlan& plan, const StudyFolder& folder);
 
   [[nodiscard]] const StudyFolder& folder() const noexcept { return folder_; }
   [[nodiscard]] bool has_mesh(std::string_view name) const;
-  /// Returns the record of a scenario, null if no run of it is finished.
+  /// Returns the record of a scenario; null if none of its runs is finished.
   [[nodiscard]] const ScenarioRecord* find(std::string_view scenario) const;
   [[nodiscard]] int runs_done(std::string_view scenario) const;
   /// Returns a record without runs, with the study's orderings.

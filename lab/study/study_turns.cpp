@@ -18,7 +18,7 @@ constexpr Offset kMotionBytes = Offset{256} << 20;
 constexpr double kTurnSeconds = 1.0;
 constexpr Index kMinTurns = 8;
 constexpr Index kMinSteps = 8;
-/// Memory of a process relative to its body: it also holds the mesh and what the body was made from.
+/// Memory of a process relative to its body: the process also holds the mesh and what the body was made from.
 constexpr double kProcessBytesOfBody = 2.5;
 
 /// Returns the memory available to new processes; unlimited if the system does not report it.
@@ -42,7 +42,7 @@ void add(const RunRecord& turn, RunRecord& run) {
   run.warnings.insert(run.warnings.end(), turn.warnings.begin(), turn.warnings.end());
 }
 
-/// Returns the groups of orders that are in memory together.
+/// Returns groups of orders; the orders of a group are in memory together.
 std::vector<std::vector<std::size_t>> groups_of(const Round& round) {
   std::vector<std::size_t> all(round.tasks.size());
   std::iota(all.begin(), all.end(), std::size_t{0});

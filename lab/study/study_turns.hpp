@@ -12,16 +12,16 @@
 
 namespace meshorder {
 
-/// How the steps of a scenario are divided into turns.
+/// The division of a scenario's steps into turns.
 struct TurnPlan {
   Index steps = 0;
   Index frame_every = 1;
-  Index turn = 1;           ///< steps, a multiple of frame_every
-  bool interleaved = true;  ///< all orders in memory, by turns
+  Index turn = 1;           ///< steps of a turn, a multiple of frame_every
+  bool interleaved = true;  ///< all orders are in memory and take turns
 };
 
 /// Plans:
-/// - turns of about a second, at least eight if there are enough steps;
+/// - turns of about a second, but at least eight turns if there are enough steps;
 /// - about 48 frames, fewer if their file would exceed 256 MB;
 /// - all orders at once if free memory holds them.
 ///
@@ -39,9 +39,9 @@ struct Round {
   int number = 0;  ///< index of the run, which begins with order `number` modulo the number of orders
 };
 
-/// Runs a round. Calls `after_turn` with the share of the steps that are done; if that returns false, stops
-/// and returns nothing. Throws Error if a process fails, or if the first order's body does not have the
-/// fingerprint `fingerprint`.
+/// Runs a round. Calls `after_turn` after each set-up and turn, with the share of steps done; if `after_turn`
+/// returns false, stops and returns nothing. Throws Error if a process fails, or if the first order's body
+/// does not have the fingerprint `fingerprint`.
 std::optional<std::vector<RunRecord>> run_round(const Round& round, const std::string& fingerprint,
                                                 const std::function<bool(double share)>& after_turn);
 

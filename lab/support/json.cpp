@@ -43,7 +43,7 @@ class UniqueKeys {
   std::vector<std::set<std::string>> keys_;
 };
 
-/// Characters up to which a value is written in one line.
+/// Most characters of an object or list that is written in one line.
 constexpr std::size_t kShort = 100;
 
 bool is_list_of_plain_values(const nlohmann::ordered_json& json) {
@@ -52,7 +52,7 @@ bool is_list_of_plain_values(const nlohmann::ordered_json& json) {
          });
 }
 
-/// Returns a value as JSON in one line; bytes that are no UTF-8 become U+FFFD.
+/// Returns a value as JSON in one line; bytes that are not UTF-8 become U+FFFD.
 std::string dumped(const nlohmann::ordered_json& json) {
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

@@ -46,7 +46,8 @@ struct NumberRange {
 };
 
 /// A value in a JSON file with its path there: every Error names file and path, as in `FILE:
-/// forces[0].newtons: what; remedy`. The nlohmann::json value and the text of `guide` must outlive it.
+/// forces[0].newtons: what; remedy`. The nlohmann::json value and the text of `guide` must outlive the
+/// object.
 class JsonValue {
  public:
   JsonValue(const nlohmann::json& value, std::string file, std::string_view guide = kScenarioGuide)
@@ -60,7 +61,7 @@ class JsonValue {
   }
 
   // ---- objects
-  /// Throws unless this is an object, all of whose keys are in `known`.
+  /// Throws unless this is an object and `known` has all its keys.
   void expect_keys(std::initializer_list<std::string_view> known) const;
   void expect_keys(std::span<const std::string_view> known) const;
   [[nodiscard]] bool has(std::string_view key) const { return value_->contains(key); }
@@ -116,7 +117,7 @@ class JsonValue {
 };
 
 /// Returns JSON for people and version control: short values and lists of numbers take one line, other values
-/// are indented. Doubles read back to the same bits; bytes that are no UTF-8 become U+FFFD. The text ends
+/// are indented. Doubles read back to the same bits; bytes that are not UTF-8 become U+FFFD. The text ends
 /// with a line break. O(size · depth).
 std::string json_text(const nlohmann::ordered_json& json);
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kPasses = 8;
 
-/// Returns several times the size of the last cache, but not so much that a small machine swaps.
+/// Returns the bytes to read: several times the last cache, but not so many that a small machine swaps.
 std::size_t buffer_bytes(const MachineRecord& machine) {
   constexpr std::size_t kMin = std::size_t{256} << 20;
   constexpr std::size_t kMax = std::size_t{1} << 30;

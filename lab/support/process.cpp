@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Runs in the child between fork and exec, where only system calls are allowed.
+/// Executes the program, in the child after fork, where only system calls are allowed.
 [[noreturn]] void become(const char* program, char* const* arguments, int socket, bool fixed_addresses,
                          pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);

@@ -14,7 +14,7 @@
 namespace meshorder {
 
 /// A child process that reads lines of text, or bytes, from its standard input and writes lines or bytes to
-/// its standard output. Ctrl-C does not reach it. It ends no later than this process.
+/// its standard output. The child ignores Ctrl-C, and ends no later than this process.
 class ChildProcess {
  public:
   /// Starts a program. With `fixed_addresses`, address space randomisation is off where the system allows it:
@@ -65,7 +65,7 @@ struct ExitStatus {
 };
 
 /// Runs a program in `folder` until it ends, without a shell and without input; its output goes to the file
-/// `log`. Throws std::system_error if it cannot be started.
+/// `log`. Throws std::system_error if the program cannot be started.
 ExitStatus run_process(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                        const std::filesystem::path& folder, const std::filesystem::path& log);
 

@@ -44,7 +44,7 @@ struct Hexahedra {
   std::vector<dealii::CellData<3>> cells;
 };
 
-// Cuts each tetrahedron at the middles of its edges and faces and at its own middle.
+// Cuts each tetrahedron into four hexahedra, at the middles of the edges, the faces and the tetrahedron.
 Hexahedra hexahedra_of(const measuring::Tetrahedra& mesh) {
   Hexahedra hexahedra;
   std::map<std::vector<int>, unsigned int> middles;

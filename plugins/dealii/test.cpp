@@ -43,7 +43,7 @@ void check(bool holds, const char* what, int line) {
 }
 #define EXPECT(condition) check((condition), #condition, __LINE__)
 
-// A permutation that is not its own inverse: k goes to stride · k mod n.
+// Returns a permutation that is not its own inverse: k goes to stride · k mod n.
 std::vector<dealii::types::global_dof_index> strided(unsigned int n) {
   unsigned int stride = 37;
   while (std::gcd(stride, n) != 1) ++stride;
@@ -58,7 +58,7 @@ unsigned int bandwidth(const dealii::DoFHandler<2>& dofs) {
   return static_cast<unsigned int>(pattern.bandwidth());
 }
 
-// A strip of 60 squares: in a good order of its vertices, each has neighbours at most 3 away.
+// Orders a strip of 60 squares: in a good order, neighbours' numbers differ by at most 3.
 void test_direction_of_dofs() {
   dealii::Triangulation<2> strip;
   dealii::GridGenerator::subdivided_hyper_rectangle(strip, {60, 1}, {0, 0}, {60, 1});
@@ -82,7 +82,7 @@ void test_direction_of_dofs() {
   meshorder::renumber_dofs(dofs, "hilbert");  // by support points
 }
 
-// Solves −Δu = x + 1 on a refined disk with hanging nodes; returns u at the vertices, by their coordinates.
+// Solves −Δu = x + 1 on a refined disk with hanging nodes; returns u at the vertices, by coordinates.
 std::map<std::pair<double, double>, double> solution(const std::string& method) {
   dealii::Triangulation<2> disk;
   dealii::GridGenerator::hyper_ball(disk);
@@ -145,7 +145,7 @@ void test_the_same_solution() {
   }
 }
 
-// A strip of cubes that were shuffled. The material of each cube is its position; one end is marked.
+// Orders a strip of shuffled cubes. The material of each cube is its position; one end is marked.
 void test_cells() {
   dealii::Triangulation<3> strip;
   dealii::GridGenerator::subdivided_hyper_rectangle(strip, {60, 1, 1}, {0, 0, 0}, {60, 1, 1});

@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
     std::deque<problem::System> systems;
     std::vector<measuring::Case> cases;
     for (const Orders& order : orders) {
-      // the time that the orders take, measured in each call
+      // seconds that the orders take, summed over all calls
       double seconds = 0;
       const auto counted = [&seconds](const problem::Reorder& reorder) -> problem::Reorder {
         return [&seconds, &reorder](const auto& graph) {

@@ -32,10 +32,10 @@
 /// orders.
 namespace problem {
 
-/// Takes a graph and returns the new index of each node, the form that DOLFINx needs.
+/// A function that takes a graph and returns the new index of each node, as DOLFINx needs it.
 using Reorder = std::function<std::vector<int>(const dolfinx::graph::AdjacencyList<std::int32_t>&)>;
 
-/// Leaves everything where it is.
+/// Returns the identity.
 inline std::vector<int> stay(const dolfinx::graph::AdjacencyList<std::int32_t>& graph) {
   std::vector<int> map(static_cast<std::size_t>(graph.num_nodes()));
   for (std::size_t k = 0; k < map.size(); ++k) map[k] = static_cast<int>(k);
@@ -119,7 +119,7 @@ class System {
     return iterations;
   }
 
-  /// Returns the mean distance of the matrix's entries from its diagonal.
+  /// Returns the mean distance of the off-diagonal entries from the diagonal.
   double mean_span() const {
     double sum = 0;
     for (std::size_t row = 0; row < right_.size(); ++row) {

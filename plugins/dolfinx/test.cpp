@@ -29,7 +29,7 @@ void check(bool holds, const char* what, int line) {
 }
 #define EXPECT(condition) check((condition), #condition, __LINE__)
 
-// A bar of cubes, each cut into six tetrahedra around its diagonal, with points and cells scattered.
+// Returns a bar of cubes, each cut into six tetrahedra around its diagonal, with scattered points and cells.
 measuring::Tetrahedra bar(int length, int side) {
   constexpr std::array<std::array<int, 3>, 6> paths{
       {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
@@ -78,8 +78,8 @@ std::shared_ptr<dolfinx::fem::FunctionSpace> linear_space(const std::shared_ptr<
       dolfinx::fem::create_functionspace(mesh, element, 1, order));
 }
 
-// A bar of one row of cubes has a bandwidth of at most 7: neighbours are in the same or adjacent squares of 4
-// points.
+// Orders a bar of one row of cubes. A good order has a bandwidth of at most 7: neighbours are in the same or
+// adjacent squares of 4 points.
 void test_direction() {
   const measuring::Tetrahedra tetrahedra = bar(60, 1);
   const auto rcm = meshorder::dolfinx_reorder("rcm");
@@ -100,7 +100,7 @@ void test_direction() {
   EXPECT(bandwidth(wrong->geometry().dofmap()) > 7);
 }
 
-// Returns u at the points, by their coordinates.
+// Solves the problem in that order; returns u at the points, by coordinates.
 std::map<std::array<double, 3>, double> solution(const problem::Reorder& order) {
   const auto mesh = problem::create_mesh(bar(9, 5), order, order);
   const auto space = linear_space(mesh, order);

@@ -6,9 +6,9 @@
 
 static const char prefix[] = "meshorder_";
 
-/* A MatOrderingType's function. PETSc numbers rows by inodes or blocks where the matrix has them, and expands
- * the result itself. The pattern is made symmetric by meshorder: PETSc would take the lower triangle for the
- * whole. */
+/* Orders a matrix, as a MatOrderingType. If the matrix has inodes or blocks, PETSc gives the graph of these
+ * and expands the result. meshorder makes the pattern symmetric, since PETSc would take the lower triangle
+ * for the whole. */
 static PetscErrorCode OrderMatrix(Mat matrix, MatOrderingType type, IS* rows, IS* columns) {
   const PetscInt* offsets;
   const PetscInt* neighbours;

@@ -1,18 +1,18 @@
 /* Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT */
-/* MatOrderings of meshorder as PETSc uses them. Run with -dll_append libmeshorder_petsc.so: the test is not
- * linked with that library. */
+/* Tests MatOrderings of meshorder as PETSc uses them. Run with -dll_append libmeshorder_petsc.so: the test is
+ * not linked with that library. */
 #include "testing.h"
 
 #include <petscksp.h>
 #include <string.h>
 
-/* Returns the number in the matrix of the i-th vertex of a path. 37 is not its own inverse modulo 101. */
+/* Returns the number that vertex i of a path has in the matrix. 37 is not its own inverse modulo 101. */
 enum { PATH = 101 };
 static PetscInt scattered(PetscInt i) { return (37 * i + 11) % PATH; }
 
-/* The Laplacian of a path, shifted to be regular, whose vertices are numbered by `scattered`. Each vertex has
- * `block` unknowns; if block > 1, they are coupled with all unknowns of its neighbours. If `lower_too` is 0,
- * the matrix is upper bidiagonal along the path. */
+/* Makes the Laplacian of a path, shifted to be regular, with vertices numbered by `scattered`. Each vertex
+ * has `block` unknowns, coupled with each other and with all unknowns of adjacent vertices. If `lower_too` is
+ * 0, the matrix is upper bidiagonal along the path. */
 static PetscErrorCode CreatePath(PetscInt block, int lower_too, Mat* matrix) {
   PetscFunctionBeginUser;
   PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, PATH * block, PATH * block, 3 * block, NULL, matrix));
@@ -97,8 +97,8 @@ static PetscErrorCode TestBlocks(MatType type, PetscInt block) {
   PetscFunctionReturn(0);
 }
 
-/* Solves with a matrix by PETSc's factors in that order. `fill` is the number of entries of the factors
- * divided by that of the matrix. */
+/* Solves a system by PETSc's factors in that order and checks the solution. `fill` is the number of entries
+ * in the factors divided by that in the matrix. */
 static PetscErrorCode Solve(Mat matrix, PCType type, const char* ordering, PetscReal* fill) {
   KSP solver;
   PC preconditioner;

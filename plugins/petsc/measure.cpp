@@ -41,7 +41,7 @@ DM permuted(DM dm, IS perm) {
   return moved;
 }
 
-// The problem on a mesh, in the order that its vertices have.
+// The problem on a mesh, in the mesh's own order.
 class Problem {
  public:
   explicit Problem(DM dm) : dm_(dm) {
@@ -102,7 +102,7 @@ class Problem {
     for (int k = 0; k < times; ++k) must(MatMult(matrix_, right_, solution_));
   }
 
-  // A new solver, so that its set-up is timed again.
+  // Returns a new solver, so that the set-up is timed again.
   [[nodiscard]] KSP solver(KSPType type, PCType preconditioner, MatOrderingType ordering) const {
     KSP ksp = nullptr;
     PC pc = nullptr;

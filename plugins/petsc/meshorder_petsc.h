@@ -19,8 +19,8 @@
  * A second call changes nothing.
  *
  * MatGetOrdering then returns the order in PETSc's form, new to old: row k of the permuted matrix is row
- * perm[k]. Rows and columns get the same order, that of the pattern of A + A^T. Values of entries do not
- * count. Methods that need coordinates (hilbert, morton) end with PETSC_ERR_LIB: a matrix has none.
+ * perm[k] of the matrix. Rows and columns get the same order, that of the pattern of A + A^T. Values do not
+ * count. Methods that need coordinates (hilbert, morton) fail with PETSC_ERR_LIB: a matrix has none.
  */
 PETSC_EXTERN PetscErrorCode MeshorderMatOrderingRegister(void);
 

@@ -119,7 +119,7 @@ static PetscErrorCode NumberPoints(DM dm, PetscInt begin, PetscInt end, PetscInt
                                    const PetscInt* cells, PetscInt first_cell, PetscInt* old_to_new) {
   Kinds kinds;
   PetscInt taken = 0;
-  PetscInt* sequence; /* the points that have their numbers, in the order in which they got them */
+  PetscInt* sequence; /* the points, in the order in which they get their numbers */
 
   PetscFunctionBeginUser;
   PetscCall(KindsCreate(dm, begin, end, &kinds));

@@ -1,5 +1,5 @@
 /* Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT */
-/* Orders of meshes for DMPlexPermute. */
+/* Tests orders of meshes for DMPlexPermute. */
 #include "meshorder_petsc.h"
 #include "testing.h"
 
@@ -9,7 +9,7 @@ static PetscInt greatest_common_divisor(PetscInt a, PetscInt b) {
   return b == 0 ? a : greatest_common_divisor(b, a % b);
 }
 
-/* Permutes the numbers of each kind of points by a stride, as a mesh generator's might be. */
+/* Permutes the numbers of the points of each depth by a stride. */
 static PetscErrorCode Scramble(DM* dm) {
   PetscInt depth, begin, end;
   PetscInt* numbers;
@@ -36,7 +36,7 @@ static PetscErrorCode Scramble(DM* dm) {
 }
 
 /* Makes a box of faces[0] x faces[1] (x faces[2]) squares or cubes, cut into 2 triangles or 6 tetrahedra
- * each, one for each sequence of the axes: along them a path leads from the lowest corner to the highest. */
+ * each, one for each sequence of the axes, along which a path leads from the lowest corner to the highest. */
 static PetscErrorCode CreateSimplices(PetscInt dimension, const PetscInt faces[3], DM* dm) {
   static const PetscInt axes_2d[2][3] = {{0, 1, 0}, {1, 0, 0}};
   static const PetscInt axes_3d[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
@@ -84,7 +84,7 @@ static PetscErrorCode CreateSimplices(PetscInt dimension, const PetscInt faces[3
   PetscFunctionReturn(0);
 }
 
-/* Finds the largest distance of the numbers of two cells that share a facet. */
+/* Finds the largest difference between the numbers of two cells that share a facet. */
 static PetscErrorCode CellBandwidth(DM dm, PetscInt* bandwidth) {
   PetscInt begin, end;
 
@@ -148,7 +148,7 @@ static PetscErrorCode Measure(DM dm, PetscReal* volume, PetscReal moment[3], Pet
     *volume += size;
     for (int axis = 0; axis < 3; ++axis) moment[axis] += size * centre[axis];
   }
-  /* a facet is marked if it has only one cell, as before */
+  /* exactly the facets of only one cell are marked, as before */
   *boundary = 0;
   PetscCall(DMGetLabel(dm, "marker", &label));
   PetscCall(DMPlexGetHeightStratum(dm, 1, &begin, &end));
@@ -162,7 +162,7 @@ static PetscErrorCode Measure(DM dm, PetscReal* volume, PetscReal moment[3], Pet
   PetscFunctionReturn(0);
 }
 
-/* Orders a scrambled mesh and moves it: the same mesh, with cells next to each other near in number. */
+/* Orders a scrambled mesh and moves it: the mesh stays the same, and adjacent cells have near numbers. */
 static PetscErrorCode TestBox(PetscInt dimension, PetscBool simplex, const PetscInt faces[3],
                               const char* method, PetscInt most) {
   DM dm, ordered, swapped;
@@ -204,7 +204,7 @@ static PetscErrorCode TestBox(PetscInt dimension, PetscBool simplex, const Petsc
   PetscFunctionReturn(0);
 }
 
-/* A row of squares and triangles by turns: a cell takes the number of one of its own type. */
+/* Orders a row of alternating squares and triangles: a cell takes the number of a cell of its type. */
 static PetscErrorCode TestMixedTypes(void) {
   enum { PAIRS = 5, CELLS = 2 * PAIRS };
   /* square k: 0-1-3-2 of the grid's column, then a triangle on its upper edge */

@@ -18,7 +18,7 @@
 namespace meshorder {
 namespace {
 
-/// Compares two studies' descriptions one by one.
+/// Checks one by one that descriptions in two studies agree.
 class Comparison {
  public:
   Comparison(const ComparedStudy& a, const ComparedStudy& b) : a_(a), b_(b) {}
@@ -28,7 +28,7 @@ class Comparison {
     if (a != b) refuse(fmt::format("{} {}, where {} has {}", what, b, a_.file, a));
   }
 
-  /// Throws unless both have records of the same names.
+  /// Throws unless both lists have records of the same names.
   template <class Record>
   void expect_same_names(std::string_view what, const std::vector<Record>& a,
                          const std::vector<Record>& b) const {

@@ -19,8 +19,8 @@ struct ComparedStudy {
   StudyResults results;
 };
 
-/// Throws InputError, which names both files and the difference, unless both studies ran the same scenarios
-/// on the same meshes in the same precision, with the same reference. They may differ in machine, program,
+/// Throws InputError, which names the difference, unless both studies ran scenarios, and the same scenarios
+/// on the same meshes with the same parameters and the same reference. They may differ in machine, program,
 /// threads, steps, runs and further orders.
 void check_comparable(const ComparedStudy& a, const ComparedStudy& b);
 
@@ -33,10 +33,10 @@ struct SavingDifference {
   bool operator==(const SavingDifference&) const = default;
 };
 
-/// Returns the difference of two independent studies, with an interval from the intervals of both: its lower
-/// end is √((b − b's low)² + (a's high − a)²) below the difference, its upper end likewise above (Zou and
-/// Donner 2008, Construction of confidence limits about effect measures: a general approach, Statistics in
-/// Medicine 27). Empty if a study has no interval.
+/// Returns the difference between the savings in two independent studies. The lower end of its interval is
+/// √((b − b's low)² + (a's high − a)²) below the difference, the upper end likewise above (Zou and Donner
+/// 2008, Construction of confidence limits about effect measures: a general approach, Statistics in Medicine
+/// 27). Empty if a study has no interval.
 std::optional<SavingDifference> difference_of(const Speedup& a, const Speedup& b);
 
 /// An order in a scenario. Both studies have run the scenario in this order and in the reference.

@@ -124,7 +124,7 @@ TableCell cell_of(const Table& table, const std::string& head) {
   return unknown_cell();
 }
 
-/// Returns the rows of machine and protocol of both studies side by side.
+/// Returns the tables `machine` and `protocol` of both studies side by side.
 Table machines_table(const ComparedStudy& a, const ComparedStudy& b) {
   Table table{"comparison-machines",
               "Machines, programs and dates",
@@ -144,7 +144,7 @@ Table machines_table(const ComparedStudy& a, const ComparedStudy& b) {
     for (const std::string& head : heads) {
       TableCell left = cell_of(of_a, head);
       TableCell right = cell_of(of_b, head);
-      left.value.reset();  // columns of words and numbers
+      left.value.reset();  // the columns mix words and numbers
       right.value.reset();
       TableCell same = text_cell(left.text == right.text ? "same" : "differs");
       same.weak = left.text == right.text;

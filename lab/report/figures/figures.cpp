@@ -31,7 +31,7 @@ const OrderStyle* paper_style(std::string_view ordering) {
   return found == kPaperStyles.end() ? nullptr : &found->second;
 }
 
-/// Returns `text` in lower-case letters, digits and '-', never two '-' in a row.
+/// Returns `text` in lower case; each run of characters other than letters and digits becomes one '-'.
 std::string slug(std::string_view text) {
   std::string result;
   for (const char c : text) {

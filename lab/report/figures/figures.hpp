@@ -9,10 +9,10 @@
 namespace meshorder {
 
 struct Figure {
-  std::string name;     ///< of its file, "spans-dragon"
+  std::string name;     ///< of the file without extension, "spans-dragon"
   std::string section;  ///< its section of the page: "speedup", "spans", "caches", "phases" or "prediction"
   std::string title;
-  std::string caption;  ///< also its alternative text
+  std::string caption;  ///< also the picture's alternative text
   std::string svg;
 };
 
@@ -25,12 +25,12 @@ bool can_draw_figures();
 /// Error, which names the package, if gnuplot is not installed or fails.
 std::vector<Figure> figures_of(const StudyResults& results);
 
-// The figures of each section of the page; empty without data.
+// The functions below return the figures of a section of the page; empty without data.
 
 std::vector<Figure> speedup_figures(const StudyResults& results);
-/// The paper's Figure 10 for each mesh.
+/// Returns the paper's Figure 10 for each mesh.
 std::vector<Figure> span_figures(const StudyResults& results);
-/// One figure for each mesh.
+/// Returns one figure for each mesh.
 std::vector<Figure> cache_figures(const StudyResults& results);
 std::vector<Figure> phase_figures(const StudyResults& results);
 std::vector<Figure> prediction_figures(const StudyResults& results);

@@ -73,8 +73,8 @@ std::string in_one_line(std::string_view text) {
   return result;
 }
 
-/// Adds `prefix` to ids and references to them, and escapes '>' in the picture's texts, since "]]>" there is
-/// not valid XML.
+/// Adds `prefix` to ids and references to them, and escapes '>' in the picture's texts, since "]]>" in a text
+/// is not valid XML.
 std::string with_own_ids(const std::string& svg, const std::string& prefix) {
   std::string result;
   for (std::size_t begin = 0; begin < svg.size();) {
@@ -87,7 +87,7 @@ std::string with_own_ids(const std::string& svg, const std::string& prefix) {
   return result;
 }
 
-/// Replaces gnuplot's own title and description, and makes the ids unique.
+/// Replaces gnuplot's title and description by the figure's, and makes the ids unique.
 std::string tidied(const std::string& svg, const Figure& figure) {
   const std::size_t begin = svg.find("<svg");
   const std::size_t title = svg.find("<title>", begin);

@@ -34,14 +34,14 @@ std::string gnuplot_tic(std::string_view text);
 /// Universal Design).
 struct OrderStyle {
   std::string_view colour;
-  int filled = 0;  ///< gnuplot's point types
+  int filled = 0;  ///< gnuplot's point type, like `hollow`
   int hollow = 0;
   std::string_view dashes;
-  int pattern = 0;  ///< gnuplot's, of areas
+  int pattern = 0;  ///< gnuplot's fill pattern
 };
 
-/// Returns the style of an order. The paper's orders have the same style in all studies; others take the
-/// remaining styles, in the study's sequence.
+/// Returns the style of an order. The paper's orders have the same style in all studies; other orders get the
+/// remaining styles by turns, in the study's sequence.
 OrderStyle style_of(const StudyResults& results, std::string_view ordering);
 
 /// Returns a block of inline data, "$NAME << EOD …".

@@ -16,9 +16,9 @@
 namespace meshorder {
 namespace {
 
-/// Returns the points of the log–log histogram, "span edges". First come single bins; further out, where bins
-/// crowd on the logarithmic axis, the mean of the bins of each tenth of a decade. Bins without edges are left
-/// out, as they have no logarithm.
+/// Returns the points of the log–log histogram, "span edges". Each of the first bins is a point; further out,
+/// where bins crowd on the logarithmic axis, the mean of the bins in each tenth of a decade is a point.
+/// Points without edges are left out, as 0 has no logarithm.
 std::vector<std::string> histogram_points(const std::vector<Offset>& histogram, Index width) {
   std::vector<std::string> points;
   for (std::size_t begin = 0; begin < histogram.size();) {
@@ -36,7 +36,7 @@ std::vector<std::string> histogram_points(const std::vector<Offset>& histogram, 
   return points;
 }
 
-/// Orders with the same spans share a curve.
+/// A curve for all orders with the same spans.
 struct Curve {
   std::string title;  ///< "Fiedler, VF Fiedler"
   OrderStyle style;
@@ -178,14 +178,14 @@ Figure cache_figure(const StudyResults& results, const MeshRecord& mesh) {
       "for each kernel, a column for each processor. Where the bars of a level are alike, the order does "
       "not matter.",
       {}};
-  // in pixels, like the text
+  // in pixels, like the height of the text
   constexpr int kWidth = 520;
   constexpr int kLeft = 54;
   constexpr int kKeyRow = 22;
   const int key_height = kKeyRow * (static_cast<int>(mesh.orders.size()) + 1) / 2;
   const int panels = key_height + 40;
   constexpr int kRow = 140;
-  // the first kernels that have accesses; a matrix has only products
+  // kernels with accesses come first; a matrix has only products
   const auto is_run = [&](const KernelRecord& kernel) { return kernel.accesses > 0; };
   const std::array<KernelRecord, kKernels.size()>& records = mesh.orders.front().kernels;
   const auto kernels = static_cast<std::size_t>(std::count_if(records.begin(), records.end(), is_run));

@@ -22,7 +22,7 @@ std::vector<const ScenarioRecord*> compared_scenarios(const StudyResults& result
   return scenarios;
 }
 
-/// Returns the orders without the reference.
+/// Returns all orders but the reference.
 std::vector<const OrderingSpec*> compared_orders(const StudyResults& results) {
   std::vector<const OrderingSpec*> orders;
   for (const OrderingSpec& ordering : results.orderings) {
@@ -35,7 +35,7 @@ std::vector<const OrderingSpec*> compared_orders(const StudyResults& results) {
 struct Rows {
   std::size_t orders = 0;
 
-  /// Returns the height at which an order of a scenario is drawn; a scenario is 1 high.
+  /// Returns the y coordinate at which an order of a scenario is drawn; a scenario is 1 high.
   [[nodiscard]] double at(std::size_t scenario, std::size_t order) const {
     const double place = (static_cast<double>(order) + 0.5) / static_cast<double>(orders);
     return -static_cast<double>(scenario) - (0.1 + 0.8 * place);
@@ -55,11 +55,11 @@ constexpr std::array kPhases{PhaseStyle{&Phases::mesh, "mesh", "#56b4e9", 5},
                              PhaseStyle{&Phases::collision, "collision", "#009e73", 1},
                              PhaseStyle{&Phases::other, "other", "#7f7f7f", 2}};
 
-/// The bars of the orders of all scenarios, and their labels.
+/// The bars of all scenarios and orders, and the bars' labels.
 struct Bars {
   std::array<std::vector<std::string>, kPhases.size()> parts;  ///< "left right bottom top"
   std::vector<std::string> tics;
-  std::vector<std::string> heads;  ///< "x y" of scenarios' names
+  std::vector<std::string> heads;  ///< commands that draw the scenarios' names
   double height = 0;
 };
 

@@ -110,8 +110,8 @@ std::string caution(const StudyResults& results) {
   return words + in_words(shorter) + ". Later steps may cost more or less than the first ones.";
 }
 
-/// Returns the largest distance between the motions of a scenario's orders, as a share of the body's size, if
-/// known.
+/// Returns the largest distance from the first order's motion, over all orders of a scenario, as a share of
+/// the body's longest side; empty if not known.
 std::optional<double> largest_difference(const ScenarioRecord& scenario) {
   std::optional<double> largest;
   for (const ScenarioOrderRecord& order : scenario.orders) {
@@ -186,7 +186,7 @@ std::string other_work(const StudyResults& results) {
 std::string against_all_scrambled(const StudyResults& results) {
   Range saved;
   for (const ScenarioRecord& scenario : results.scenarios) {
-    if (scenario.method == "particle-fem") continue;  // its elements are ordered anew in each step
+    if (scenario.method == "particle-fem") continue;  // a fluid's elements are ordered in each step
     const ScenarioOrderRecord* const ordered = find_order(scenario, "vf-fiedler");
     const ScenarioOrderRecord* const scrambled = find_order(scenario, "vf-scrambled");
     if (ordered == nullptr || scrambled == nullptr || ordered->runs.size() != scrambled->runs.size())

@@ -9,13 +9,13 @@
 
 namespace meshorder {
 
-/// Returns what the results show beyond the table of savings, in a few sentences to print below it: limits of
-/// the study, when orders pay off, whether all orders did the same work, and what spans, simulated caches and
-/// predictions show. All follow from the numbers in `results`.
+/// Returns what the results show beyond the table of savings, in sentences to print below that table: limits
+/// of the study, when orders pay off, whether all orders did the same work, and what spans, simulated caches
+/// and predictions show. All follow from the numbers in `results`.
 std::vector<std::string> findings_of(const StudyResults& results);
 
-/// Returns findings on the meshes, as sentences: verdicts, edge spans, simulated misses of the last level on
-/// each processor and, in a study without scenarios, the measured kernels that gain and lose most.
+/// Returns findings on the meshes, as sentences: edge spans, simulated misses of the last cache level on each
+/// processor and, in a study with scenarios, how far the predicted speedups of the kernels are off.
 std::vector<std::string> mesh_findings(const StudyResults& results);
 
 /// How far the predicted speedups of a kernel over the study's reference are from the measured ones, over all
@@ -25,7 +25,7 @@ struct PredictionError {
   double median = 0;          ///< the middle error, or the mean of the two middle errors
   double of_nine_tenths = 0;  ///< the smallest number that nine tenths of the errors do not exceed
   double largest = 0;
-  int pairs = 0;                  ///< of orders of a mesh whose measured times differ by more than 10 %
+  int pairs = 0;                  ///< pairs of a mesh's orders whose measured times differ by more than 10 %
   int pairs_predicted_right = 0;  ///< pairs whose faster order was predicted
 };
 

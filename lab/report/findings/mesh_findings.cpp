@@ -16,7 +16,7 @@
 namespace meshorder {
 namespace {
 
-/// Pairs of orders whose measured times differ by a smaller factor are not counted.
+/// Pairs of orders whose measured times differ by no more than this factor are not counted.
 constexpr double kApart = 1.1;
 
 void count_pairs(const MeshRecord& mesh, std::size_t kernel, PredictionError& error) {
@@ -35,7 +35,7 @@ void count_pairs(const MeshRecord& mesh, std::size_t kernel, PredictionError& er
   }
 }
 
-/// Returns a sentence on the smallest mean span of each mesh and that of the reference.
+/// Returns a sentence on each mesh's mean spans: the smallest, and the reference's.
 std::string spans_in_words(const StudyResults& results) {
   std::vector<std::string> parts;
   for (const MeshRecord& mesh : results.meshes) {
@@ -55,7 +55,7 @@ std::string spans_in_words(const StudyResults& results) {
 }
 
 /// Returns the misses of the last level of a hierarchy in an order: the sum over all kernels and meshes.
-/// Nothing if one of them was not simulated.
+/// Empty if one of the kernels was not simulated.
 std::optional<double> last_level_misses(const StudyResults& results, const std::string& ordering,
                                         std::size_t hierarchy) {
   double sum = 0;

@@ -21,13 +21,13 @@ std::string signed_percent(double percent);
 /// Returns "9,870", "12.3 k", "1.23 M": three digits from 10,000 on.
 std::string metric(double number);
 
-/// Returns 49152 as "48 KB".
+/// Returns "48 KB" for 49152.
 std::string bytes_in_words(double bytes);
 
 /// Returns "falling", "falling and bowl", "falling, bowl and bounce".
 std::string in_words(const std::vector<std::string>& names);
 
-/// Returns the head of the row of a scenario in an order: "falling, VF Fiedler".
+/// Returns the head of a row: "falling, VF Fiedler".
 TableCell head_of(const StudyResults& results, const ScenarioRecord& scenario,
                   const ScenarioOrderRecord& order);
 

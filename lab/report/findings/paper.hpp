@@ -39,8 +39,9 @@ const PaperScenario* find_paper_scenario(std::string_view name);
 std::optional<PaperSaving> paper_saving(std::string_view scenario, std::string_view ordering);
 
 /// Returns the *derived* seconds of the scenario's steps in an order. For the scrambled order this is the sum
-/// of the seconds saved divided by the sum of the percentages. It is accurate to half a per cent, since the
-/// percentages are rounded. For another order, its saved seconds are subtracted.
+/// of the seconds saved divided by the sum of the percentages. This quotient is accurate to half a per cent,
+/// since the percentages are rounded. For another order, the seconds that it saves are subtracted. Empty if
+/// the paper gives no number.
 std::optional<double> paper_seconds(std::string_view scenario, std::string_view ordering);
 
 }  // namespace meshorder

@@ -67,9 +67,9 @@ std::string fill_page(std::string_view frame, const Page& page);
 /// Writes the page, completely or not at all. Throws Error if the file cannot be written.
 void write_page(const Page& page, const FilePath& path);
 
-/// Returns as HTML how much faster each mesh is in the order that `meshorder order` makes: a number if it is
-/// certain; the verdict; and for each kernel two bars, its times in the mesh's own order and in that order.
-/// Empty for a study with scenarios. Leaves out meshes that have neither a verdict nor times.
+/// Returns HTML on how much faster kernels run on each mesh in the order that `meshorder order` makes: the
+/// gain, if it is certain; the verdict; and two bars for each kernel, its times in the mesh's own order and
+/// in the new one. Empty for a study with scenarios. Leaves out meshes that have neither a verdict nor times.
 std::string headlines_of(const StudyResults& results);
 
 /// The files of viewer/, and three.js with its licence, built into the program.

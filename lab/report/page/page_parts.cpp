@@ -72,7 +72,7 @@ std::vector<Point> points_of(const SurfaceView& surface, const Mesh& mesh) {
   return points;
 }
 
-/// Returns at most `most` frames, spread evenly, first and last included.
+/// Returns the indices of at most max(`most`, 2) frames, spread evenly, first and last included.
 std::vector<std::size_t> shown_frames(std::size_t frames, std::size_t most) {
   std::vector<std::size_t> shown;
   const std::size_t count = std::min(frames, std::max<std::size_t>(most, 2));

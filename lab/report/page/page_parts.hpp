@@ -26,8 +26,8 @@ struct PageDetail {
   int sparsity_side = 192;
 };
 
-/// Returns a mesh for the page with its vertex orders, named as the study's orderings. Throws Error for a
-/// mesh without a surface.
+/// Returns a mesh for the page. `orders` are pairs of an ordering's name and the mesh's vertex order. Throws
+/// Error for a mesh without a surface.
 PageMesh page_mesh(const std::string& name, const Mesh& mesh,
                    const std::vector<std::pair<std::string, Permutation>>& orders,
                    const PageDetail& detail = {});

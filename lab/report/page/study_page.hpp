@@ -12,7 +12,7 @@
 
 namespace meshorder {
 
-/// Called with each stage as it begins and the fraction of the work that is done.
+/// Called as each stage begins, with the fraction of the work that is done.
 using ReportProgress = std::function<void(std::string_view what, double fraction)>;
 
 /// Fills a page's tables, findings and figures from its results. Without gnuplot, adds a note instead of
@@ -20,8 +20,8 @@ using ReportProgress = std::function<void(std::string_view what, double fraction
 void fill_from_results(Page& page, Notes& notes);
 
 /// Returns the page of a study: its results, and the meshes, orders, motions and obstacles in its folder.
-/// Missing files are noted. Throws Error, which names the file, for a file that is broken or does not match
-/// the others.
+/// Adds a note for each missing file. Throws Error, which names the file, for a file that is broken or does
+/// not match the others.
 Page page_of(const StudyFolder& folder, const StudyResults& results, Notes& notes,
              const ReportProgress& progress = {}, const PageDetail& detail = {});
 

@@ -12,7 +12,7 @@
 namespace meshorder {
 namespace {
 
-/// Calls `row(mesh, kernel, order, reference)`; the reference is nullptr if the mesh has no such order.
+/// Calls `row(mesh, kernel, order, reference)` for each kernel and order; a missing reference is null.
 template <class Row>
 void for_each_kernel(const StudyResults& results, Row row) {
   for (const MeshRecord& mesh : results.meshes) {

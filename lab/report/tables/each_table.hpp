@@ -19,8 +19,8 @@ TableCell saving_cell(const Speedup& speedup);
 TableCell paper_cell(std::string_view scenario, std::string_view ordering);
 
 // The paper's tables with its numbers next to ours, a row for each mesh or scenario and order. A table
-// without data has no rows. The paper's column is omitted in a study without its scenarios or with another
-// reference.
+// without data has no rows. The paper's column is omitted in a study without the paper's scenarios or with
+// another reference.
 
 /// Returns whether the paper has numbers for a scenario of the study, with the same reference.
 bool has_paper(const StudyResults& results);
@@ -36,11 +36,11 @@ Table saved_table(const StudyResults& results);       ///< Table 3
 Table speedup_table(const StudyResults& results);     ///< Table 4
 Table break_even_table(const StudyResults& results);  ///< what the orders cost, and when they pay off
 
-// Tables that explain the paper's. A table without data has no rows.
+// Further tables, which explain the paper's. A table without data has no rows.
 
 Table phases_table(const StudyResults& results);
 Table motions_table(const StudyResults& results);
-/// Returns a table for each cache hierarchy, in the sequence of the meshes.
+/// Returns a table for each cache hierarchy, in the sequence of their first mesh.
 std::vector<Table> misses_tables(const StudyResults& results);
 /// Returns how far the predicted speedups of the kernels are from the measured ones.
 Table prediction_table(const StudyResults& results);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kHead = "Scenario and order";
 
-/// Returns a cell rounded to the accuracy of a number that is derived from rounded numbers.
+/// Returns a cell for seconds that are derived from rounded numbers: rounded to 1, or to 10 from 1000 on.
 TableCell derived_cell(const std::optional<double>& seconds) {
   if (!seconds) return unknown_cell();
   const double unit = *seconds < 1000 ? 1 : 10;

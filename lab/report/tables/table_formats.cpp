@@ -23,7 +23,7 @@ std::string csv_escaped(std::string_view text) {
   return result + '"';
 }
 
-/// Returns whether all cells of the column are numbers; weak cells do not count.
+/// Returns whether all cells of the column are numbers, except weak cells.
 bool has_numbers(const Table& table, std::size_t column) {
   return !table.rows.empty() && std::all_of(table.rows.begin(), table.rows.end(), [column](const auto& row) {
     return row[column].value || row[column].weak;
@@ -67,7 +67,7 @@ std::string cell_html(const TableCell& cell) {
   return html;
 }
 
-/// Returns the number of characters of UTF-8: the width of tables' texts in a terminal.
+/// Returns the number of characters of UTF-8 text, which is its width in a terminal.
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
@@ -78,8 +78,8 @@ std::string padded(const std::string& text, std::size_t width, bool right) {
   return right ? blanks + text : text + blanks;
 }
 
-/// Calls `plain(part)` and `code(part)` for the parts outside and inside backticks. The last backtick is
-/// plain where it has no partner.
+/// Calls `plain(part)` and `code(part)` for the parts outside and inside backticks. An unpaired last backtick
+/// is plain.
 template <class Plain, class Code>
 void for_each_part(std::string_view text, Plain plain, Code code) {
   for (;;) {

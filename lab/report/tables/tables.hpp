@@ -39,12 +39,12 @@ struct Table {
 /// Returns the paper's tables, with its numbers next to ours, and further tables. Their ids:
 /// - summary: what the orders save, a row for each scenario and a column for each order
 /// - table-1: edge spans, by mesh and order
-/// - table-2: seconds, by scenario and order, as in the following tables
+/// - table-2: seconds, by scenario and order like the tables down to `motions`
 /// - table-3: seconds saved over the reference
 /// - table-4: speedups in per cent with their intervals
 /// - break-even: what an order costs and the step at which it pays off
 /// - phases: seconds of the parts of a step
-/// - motions: distance between the motion in an order and in the first order
+/// - motions: largest distance between the motions in an order and in the first order
 /// - misses-1, misses-2, …: simulated misses, one table for each cache hierarchy
 /// - prediction-error: how far predicted speedups of the kernels are from measured ones, by kernel
 /// - kernels: predicted and measured speedups of the kernels, by mesh, kernel and order
@@ -56,8 +56,8 @@ std::vector<Table> tables_of(const StudyResults& results);
 std::string to_markdown(const std::vector<Table>& tables);
 /// Returns the tables as CSV (RFC 4180), a line for each cell: table,row,column,text,value.
 std::string to_csv(const std::vector<Table>& tables);
-/// Escapes text for a line of Markdown, so that nothing in it is markup or ends a table's cell or the line.
-/// Control characters are shown as escapes.
+/// Returns text escaped for a line of Markdown, so that nothing in it is markup, or ends a table's cell or
+/// line. Control characters are shown as escapes.
 std::string markdown_escaped(std::string_view text);
 
 /// Returns a table element with data-value attributes; text is escaped.

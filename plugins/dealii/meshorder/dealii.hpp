@@ -25,10 +25,10 @@ inline namespace v0_3 {
 
 /// Orders the degrees of freedom by their graph: those that share a cell are neighbours.
 ///
-/// @param dof_handler  with distributed degrees of freedom, all on this process
+/// @param dof_handler  after `distribute_dofs`, with all degrees of freedom on this process
 /// @param method       name of a vertex method; methods by coordinates use the support points, if the
-///                     element has some and all cells have one shape; otherwise they are refused, as
-///                     for a graph without points
+///                     element has some and all cells have one shape; otherwise these methods are
+///                     refused, as for a graph without points
 /// @param constraints  as for `make_sparsity_pattern`; a hanging node couples the nodes that it depends on
 /// @param options      see `OrderOptions`
 /// @return `permutation.old_to_new()` is what `DoFHandler::renumber_dofs` takes

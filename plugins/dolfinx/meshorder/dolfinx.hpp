@@ -13,11 +13,12 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// Returns a function that orders graphs for DOLFINx, in place of its `reorder_gps` or `reorder_rcm`: it
-/// takes an `AdjacencyList<std::int32_t>` and returns, for each node, its new index.
+/// Returns a function that orders graphs in place of DOLFINx's `reorder_gps` or `reorder_rcm`: it takes an
+/// `AdjacencyList<std::int32_t>` and returns the new index of each node.
 ///
-/// `create_functionspace` and `create_geometry` take it as `reorder_fn`; so does `create_mesh` of newer
-/// versions. Checked with DOLFINx 0.5.2. The graph has no coordinates, so methods that need them are refused.
+/// `create_functionspace` and `create_geometry` take this function as `reorder_fn`; so does `create_mesh` of
+/// newer versions. Checked with DOLFINx 0.5.2. The graph has no coordinates, so methods that need them are
+/// refused.
 ///
 /// @param method   name of a vertex method
 /// @param options  see `OrderOptions`; the arrays that its views refer to must outlive the function
