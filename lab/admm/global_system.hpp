@@ -19,11 +19,11 @@ class GlobalSystem {
   /// `stiffness` is Σ Dᵀw²D and `squared_step` h². Vertices of mass 0 must be held.
   GlobalSystem(SparseMatrix stiffness, std::span<const double> masses, double squared_step);
 
-  /// Holds these vertices. Refactors and returns true if they differ from the vertices held before.
+  /// Holds these vertices. On the first call, or if other vertices were held, refactors and returns true.
   bool hold(const HeldVertices& held);
 
-  /// Sets the held vertices' positions, taken from x, in the right-hand side b and adds their influence on
-  /// other vertices. Vectors have kPaddedStride numbers for each vertex. O(entries in the rows of held
+  /// Copies the held vertices' positions from x to the right-hand side b, and adds their influence on other
+  /// vertices to b. Vectors have kPaddedStride numbers for each vertex. O(entries in the rows of held
   /// vertices).
   void apply_held(std::span<const Real> x, std::span<Real> b) const;
 

@@ -27,18 +27,18 @@ HWY_INLINE typename Lanes::Value logarithm(typename Lanes::Value a) {
 }
 
 /// The factors of F + P/κ = A F + b cof F + γ R. P is the stress of an isotropic law, κ the bulk modulus, and
-/// R the rotation closest to F (see proximal-inl.hpp). A, b and γ are functions of p = (σ₁ + σ₂ + σ₃, σ₁σ₂ +
-/// σ₁σ₃ + σ₂σ₃, σ₁σ₂σ₃). Each law sets the derivatives that it needs.
+/// R the rotation closest to F (see proximal-inl.hpp). A, b and γ (`shift`) are functions of p =
+/// (σ₁ + σ₂ + σ₃, σ₁σ₂ + σ₁σ₃ + σ₂σ₃, σ₁σ₂σ₃). Each law sets the derivatives that it needs.
 template <class Lanes>
 struct StressFactors {
   typename Lanes::Value a, b, shift;
   typename Lanes::Value of_a[2];      ///< ∂A/∂p₁, ∂A/∂p₂
-  typename Lanes::Value of_b;         ///< ∂b/∂p₃, or ∂b/∂p₁ of a law with a shift
+  typename Lanes::Value of_b;         ///< ∂b/∂p₃; for a law with a shift, ∂b/∂p₁
   typename Lanes::Value of_shift[3];  ///< ∂γ/∂p
 };
 
-/// The step of Hooke's law, which all laws share near rest: Z = s S + c I divides the deviatoric part of
-/// S − I by 1 + 2m and the mean of S − I by 4.
+/// Computes the step Z = s S + c I of Hooke's law, to which all laws reduce near rest. The step divides the
+/// deviatoric part of S − I by 1 + 2m and the mean of S − I by 4.
 template <class Lanes>
 HWY_INLINE void hookean_step(typename Lanes::Value m, typename Lanes::Value trace, typename Lanes::Value& s,
                              typename Lanes::Value& c) {

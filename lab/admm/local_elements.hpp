@@ -13,7 +13,7 @@ enum class LocalModel : std::uint8_t;
 struct LocalLaw;
 
 /// Rest data of elements for the local steps: springs on two corners or tetrahedra on four, in the batches of
-/// LocalPass. The last batch is filled up with elements without weight, which have no force.
+/// LocalPass. The last batch is filled up with elements that have no force.
 ///
 /// A tetrahedron that is flat to rounding (see RestShapes) has no deformation gradient: it gets weight 0, and
 /// the corners and shape of a nearby tetrahedron that is not flat.
@@ -29,7 +29,7 @@ struct LocalElements {
   [[nodiscard]] Offset batches() const noexcept {
     return (count + kLocalBatch<Real> - 1) / kLocalBatch<Real>;
   }
-  /// Returns the number of rows of D x of one element.
+  /// Returns the number of rows of an element's D x.
   [[nodiscard]] Index rows() const noexcept { return corners == 2 ? 3 : 9; }
 
   [[nodiscard]] Index vertex(Offset element, Index corner) const {

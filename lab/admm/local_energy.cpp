@@ -35,7 +35,7 @@ double strain(const Matrix3& f) {
   return 0.5 * squared_norm(difference);
 }
 
-// energy densities over the bulk modulus; m and l are Lamé's parameters over the bulk modulus
+// energy densities, and Lamé's parameters m and l, all divided by the bulk modulus
 
 double stvk(const Matrix3& f, double m, double l) {
   double trace = 0.0;
@@ -56,7 +56,7 @@ double neo_hookean(const Matrix3& f, double m, double l) {
   const double lambda = l + 5.0 / 6.0 * m;
   const double growth = determinant(f) - 1.0;
   const double stretch = squared_norm(f) - 3.0;
-  // ½λ' ((J − α)² − (1 − α)²) = ½ (J − 1) (λ' (J − 1) − 3/2 μ')
+  // ½λ' ((J − α)² − (1 − α)²) = ½ (J − 1) (λ' (J − 1) − 3/2 μ') with α = 1 + ¾ μ'/λ'
   return 0.5 * (growth * (lambda * growth - 1.5 * mu) + mu * (stretch - std::log1p(0.25 * stretch)));
 }
 

@@ -16,8 +16,8 @@ HWY_INLINE typename Lanes::Value squared_length(const typename Lanes::Value (&q)
   return Lanes::mul_add(q[2], q[2], Lanes::mul_add(q[1], q[1], q[0] * q[0]));
 }
 
-/// Finds unit vectors along any q. Some q may be 0, or their squares too large or too small for a number.
-/// For q = 0, takes the direction of the rest edge.
+/// Computes unit vectors along any q, even if the square of q overflows or underflows. For q = 0, takes the
+/// direction of the rest edge.
 template <class Lanes>
 HWY_NOINLINE void find_directions(const typename Lanes::Value (&q)[3],
                                   const typename Lanes::Number* rest_direction,
@@ -26,7 +26,7 @@ HWY_NOINLINE void find_directions(const typename Lanes::Value (&q)[3],
   const Value largest = Lanes::max(Lanes::max(Lanes::abs(q[0]), Lanes::abs(q[1])), Lanes::abs(q[2]));
   MESHORDER_UNROLL
   for (int c = 0; c < 3; ++c) {
-    // NaN > 0 is false; q is 0 or NaN there, and adding q keeps the NaN
+    // where `largest` is not positive, q is 0 or NaN; adding q keeps a NaN
     direction[c] =
         Lanes::choose(largest, q[c] / largest,
                       Lanes::load(rest_direction + c * kLocalBatch<typename Lanes::Number>) + q[c]);

@@ -18,10 +18,11 @@ namespace meshorder {
 /// weight w² of its local step.
 ///
 /// Springs and strain have a single minimum in closed form: halfway to the rest length or to the closest
-/// rotation. For q = 0 the step goes along the rest edge or to the identity: a body can unfold from a point.
-/// The step of a hyperelastic model is the minimum where the objective is convex (near rest), and a local
-/// minimum elsewhere. Near rest it is accurate to about 1e-13 (floats 2e-6; floats of stvk 1e-5 at Poisson's
-/// ratio 0.3 and 1e-4 at 0). Singular values above 1e4 count as 1e4. Finite q never give NaN.
+/// rotation. If q (see LocalSteps::pass) is 0, it is halfway to the rest edge or to the identity: a body can
+/// unfold from a point. The step of a hyperelastic model is the minimum where the objective is convex (near
+/// rest), and a local minimum elsewhere. Near rest it is accurate to about 1e-13 (floats 2e-6; floats of stvk
+/// 1e-5 at Poisson's ratio 0.3 and 1e-4 at 0). Singular values above 1e4 count as 1e4. Finite q never give
+/// NaN.
 enum class LocalModel : std::uint8_t {
   springs,  ///< on every edge: D x = x_a − x_b, U = ½k(‖D x‖ − ℓ₀)², w² = k
   strain,  ///< linear tetrahedral strain: D x = F, U = ½kV‖F − R‖², w² = kV (Narain, Overby, Brown 2016)
@@ -41,9 +42,9 @@ struct EnumNames<LocalModel> {
 
 struct LocalLaw {
   LocalModel model = LocalModel::strain;
-  double stiffness = 0.0;  ///< k of all springs, N/m, or of the strain, Pa, where `stiffnesses` is empty
+  double stiffness = 0.0;           ///< k of all springs, N/m; k of the strain, Pa, if `stiffnesses` is empty
   std::vector<double> stiffnesses;  ///< strain: k of each simplex
-  Lame lame;                        ///< hyperelastic models: of all simplices, where the two below are empty
+  Lame lame;                        ///< hyperelastic models: of all simplices, if `mu` and `lambda` are empty
   std::vector<double> mu, lambda;   ///< of each simplex
 };
 
@@ -85,7 +86,7 @@ class LocalSteps {
   /// Returns the duals, 9 of each tetrahedron (row by row) and 3 of each spring, in an order that does not
   /// depend on the number of threads, for a checkpoint.
   [[nodiscard]] std::vector<Real> duals() const;
-  /// Throws InvalidArgument unless `duals` has as many numbers as duals() and all are finite.
+  /// Sets the duals. Throws InvalidArgument unless there are as many as in duals() and all are finite.
   void set_duals(std::span<const Real> duals);
 
   /// Returns the energy Σ U(D x), in joules; infinite if the energy of any element is infinite. O(elements).
@@ -107,7 +108,7 @@ class LocalSteps {
   LocalElements<Real> elements_;
   std::vector<OwnedBatches> shares_;
   std::vector<Offset> first_copies_;  ///< index of each share's first copy; its copies are consecutive
-  std::vector<Offset> copies_;        ///< one copy of each batch
+  std::vector<Offset> copies_;        ///< for each batch, one of its copies
   AlignedVector<Real> duals_;
   std::vector<double> residuals_;  ///< of each copy: primal and magnitude
 };

@@ -64,8 +64,8 @@ HWY_INLINE void add_transposed(const typename Lanes::Number* rest, const Index* 
   Lanes::scatter_add(at_origin, targets, sums);
 }
 
-/// Takes the local steps of a share's tetrahedra. A Law is constructed from the softness of its elements; its
-/// step(q, z) computes z = argmin U(z) / w² + ½‖z − q‖².
+/// Takes the local steps of a share's tetrahedra. Law(softness).step(q, z) computes z = argmin U(z) / w² +
+/// ½‖z − q‖² for elements of this softness.
 template <class Lanes, class Law>
 HWY_INLINE void pass_tetrahedra(const LocalPass<typename Lanes::Number>& pass) {
   using Number = typename Lanes::Number;
@@ -75,7 +75,7 @@ HWY_INLINE void pass_tetrahedra(const LocalPass<typename Lanes::Number>& pass) {
   for (Offset i = 0; i < count; ++i) {
     const Offset batch = pass.share.batches[i];
     const Index* const vertices = pass.vertices + 4 * kBatchOf * batch;
-    // owned_batches takes batches of kBatch
+    // owned_batches counts in batches of kBatch elements
     const Index* const targets = pass.share.targets_of(i, vertices, 4 * (kBatchOf / kBatch));
     const Number* const rest = pass.rest + kTetrahedronNumbers * kBatchOf * batch;
     Number* const duals = pass.duals + 9 * kBatchOf * i;

@@ -17,9 +17,9 @@ namespace meshorder {
 namespace {
 
 constexpr Index kVertices = 4096;  // of a chunk
-/// Maximum number of repetitions of the last global step while vertices have new contacts.
+/// How often the last global step is made at most; it is repeated while vertices have new contacts.
 constexpr int kLastRounds = 8;
-/// Depth at which a vertex may remain inside, as a share of ContactOptions::reach.
+/// Largest depth that a vertex may keep inside, as a share of ContactOptions::reach.
 constexpr double kAllowedDepth = 1e-2;
 
 const ProjectiveOptions& checked(const ProjectiveOptions& options, Index vertex_count) {
@@ -147,8 +147,8 @@ void ProjectiveDynamics<Real>::predict() {
   });
 }
 
-/// Computes both residuals of the last iteration; local steps at its positions must have been taken since.
-/// Returns whether both are within the tolerance.
+/// Sets report.residual to the larger residual of the last iteration, given the local steps at its positions.
+/// Returns whether an iteration was made and its residual is within the tolerance.
 template <class Real>
 bool ProjectiveDynamics<Real>::has_converged(const LocalResidual& local, StepReport& report) {
   const std::span<const Real> forces(right_side_.data(), x_.size());
@@ -218,7 +218,7 @@ std::span<const double> ProjectiveDynamics<Real>::in_double() {
   }
 }
 
-/// Collects the contacts of vertices that are not held.
+/// Collects the contacts of vertices that are not held; adds held corners of triangles to the offsets.
 template <class Real>
 void ProjectiveDynamics<Real>::drop_held_contacts() {
   free_contacts_.assign(contacts_->contacts().begin(), contacts_->contacts().end());

@@ -37,11 +37,11 @@ struct ProjectiveBody {
 ///
 /// A step of backward Euler minimises ½h⁻²‖x − x̄‖²_M + Σ Uᵢ(Dᵢx), x̄ = x + h v + h²M⁻¹f_ext. An iteration
 /// first takes every element's local step, z = argmin U(z) + ½w²‖z − (Dx + u)‖² and u ← u + Dx − z, then the
-/// global step, A x = M x̄ + h² Σ Dᵀw²(z − u) subject to the contacts. Its residuals are ‖W(Dx − z)‖ / ‖Wz‖
-/// and the change of the right-hand side relative to its elastic part.
+/// global step, A x = M x̄ + h² Σ Dᵀw²(z − u) subject to the contacts. An iteration's residuals are
+/// ‖W(Dx − z)‖ / ‖Wz‖ and the change of the right-hand side relative to the elastic part h² Σ Dᵀw²(z − u).
 ///
-/// A step respects the contacts at its end: after the last iteration, the global step is repeated until no
-/// vertex violates a new contact, at most eight times.
+/// A step respects the contacts at its end: the last global step is repeated until no vertex violates a new
+/// contact, but made eight times at most.
 template <class Real>
 class ProjectiveDynamics final : public Integrator {
  public:
@@ -88,7 +88,7 @@ class ProjectiveDynamics final : public Integrator {
   AlignedVector<Real> right_side_;       ///< h² Σ Dᵀw²(z − u), then the whole right-hand side
   AlignedVector<Real> last_right_side_;  ///< of the previous iteration, if there is a tolerance
   AlignedVector<double> widened_;        ///< x_ in double, if Real is float
-  std::vector<Contact> free_contacts_;   ///< those of vertices that are not held
+  std::vector<Contact> free_contacts_;   ///< contacts of vertices that are not held
   std::vector<double> contact_forces_;   ///< of all contacts, by the last global step
 };
 

@@ -15,9 +15,9 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
 /// Newton's method for the invariants p of Z in R (A Z + b cof Z + γ I) = q = R S. The three elementary
-/// symmetric functions f of S − γ I are polynomials of p, A and b. Needs neither singular values nor vectors,
-/// and is not singular where two values are equal. `solve` returns false, without a usable result, unless all
-/// lanes converge to a strict minimum.
+/// symmetric functions f of S − γ I are polynomials of p, A and b. The method needs neither singular values
+/// nor singular vectors, and is not singular where two singular values are equal. `solve` returns false,
+/// without a usable result, unless all lanes converge to a strict minimum.
 template <class Lanes, class Law>
 struct InvariantSteps {
   using Value = typename Lanes::Value;
@@ -29,7 +29,7 @@ struct InvariantSteps {
   HWY_INLINE bool solve(const Law& law) {
     constexpr bool kFloat = std::is_same_v<typename Lanes::Number, float>;
     constexpr int kSteps = 8;
-    // from an error of this size, one more step leaves only rounding error
+    // after a step of this size, only rounding errors are left
     constexpr double kNear = kFloat ? 1e-3 : 1e-7;
     start(law);
     for (int step = 0;; ++step) {
@@ -194,10 +194,10 @@ struct InvariantSteps {
   }
 };
 
-/// Computes z = argmin Ψ(z)/κ + ½‖z − q‖² of an isotropic law.
+/// Computes z = argmin Ψ(z)/κ + ½‖z − q‖² for an isotropic law.
 ///
-/// With z = R Z the condition is A Z + b cof Z + γ I = S = Rᵀq, where the left side is Z plus its stress.
-/// Near rest it is solved for the invariants of Z; elsewhere for the singular values of Z.
+/// With z = R Z the condition is A Z + b cof Z + γ I = S = Rᵀq, where the left side is Z plus its stress over
+/// κ. Near rest this equation is solved for the invariants of Z, elsewhere for the singular values of Z.
 template <class Lanes, class Law>
 HWY_INLINE void proximal_step(const Law& law, const typename Lanes::Value (&q)[3][3],
                               typename Lanes::Value (&z)[3][3]) {

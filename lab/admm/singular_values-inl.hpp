@@ -56,9 +56,9 @@ HWY_INLINE typename Lanes::Value objective(const Law& law, const typename Lanes:
   return Lanes::mul_add(Lanes::set(0.5), squares, law.energy(z));
 }
 
-/// For each pair of indices, puts the two values of z in the order of the values of σ, and gives their sum
-/// the sign of the sum of the values of σ. The energy stays the same and z comes closer to σ, so that minima
-/// among singular values become minima among all matrices. Returns whether any lane changed.
+/// For each pair of indices i, j, puts zᵢ and zⱼ in the order of σᵢ and σⱼ, and gives zᵢ + zⱼ the sign of
+/// σᵢ + σⱼ. The energy stays the same and z comes closer to σ, so that minima among singular values become
+/// minima among all matrices. Returns whether any lane changed.
 template <class Lanes>
 HWY_INLINE bool match_order(const typename Lanes::Value (&sigma)[3], typename Lanes::Value (&z)[3]) {
   using Value = typename Lanes::Value;

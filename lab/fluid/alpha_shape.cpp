@@ -9,7 +9,7 @@
 namespace meshorder {
 namespace {
 
-constexpr double kAlpha = 1.35;  ///< radius of the largest sphere, in spacings
+constexpr double kAlpha = 1.35;  ///< bound of a circumscribed sphere's radius, in spacings
 constexpr double kFlat = 0.003;  ///< volume of the flattest tetrahedron that is integrated, in cubic spacings
 
 enum class Kind : std::uint8_t { outside, flat, inside };
@@ -28,7 +28,7 @@ Kind kind_of(const std::array<Index, 4>& corners, std::span<const Point> points,
   return six_volumes > 6 * flat ? Kind::inside : Kind::flat;
 }
 
-/// The corners of the face that lies opposite each corner, outward.
+/// The corners of the face opposite each corner, anticlockwise as seen from outside.
 constexpr std::array<std::array<int, 3>, 4> kFaces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 }  // namespace

@@ -26,8 +26,8 @@ struct FluidMesh {
 };
 
 /// Returns the alpha shape (Edelsbrunner, Mücke 1994) of a triangulation: the tetrahedra whose circumscribed
-/// sphere has a radius below 1.35 spacings. A face between the shape and the outside is free unless all its
-/// corners lie on one wall. Tetrahedra smaller than 0.003 cubic spacings are flat. O(tetrahedra).
+/// sphere has a radius below 1.35 spacings. A face between the shape and the outside is on the free surface
+/// unless its corners all lie on one wall. Tetrahedra up to 0.003 cubic spacings are flat. O(tetrahedra).
 FluidMesh alpha_shape(const Triangulation& triangulation, std::span<const Point> points,
                       std::span<const Walls> walls, double spacing);
 

@@ -19,8 +19,8 @@
 namespace meshorder {
 namespace {
 
-constexpr double kMostVolumeGain = 0.02;  ///< most volume that a step restores, as a share
-constexpr double kReach = 1.3;            ///< spacings within which particles are moved apart
+constexpr double kMostVolumeGain = 0.02;  ///< most volume that a step restores, as a share of the volume
+constexpr double kReach = 1.3;            ///< distance within which particles are moved apart, in spacings
 
 /// Sets to 0 the components that point through a particle's walls.
 void hold(Walls walls, Point& vector) {

@@ -23,25 +23,25 @@ namespace meshorder {
 /// - the new velocity u = u* − τ/ρ ∇p;
 /// - the new positions: particles move by Δt u, and slightly apart.
 ///
-/// Velocities belong to times midway between two positions, so τ is the mean of this Δt and the last one.
-/// Particles in free fall thus follow a parabola, and waves keep their height. Walls are smooth: ∫ ∇q·u* has
-/// no flow through walls, and particles stay on a wall that they reach.
+/// Velocities belong to times midway between those of positions, so τ is the mean of this Δt and the last Δt.
+/// Particles in free fall thus follow a parabola, and waves keep their height. Walls have no friction:
+/// ∫ ∇q·u* has no flow through walls, and particles stay on a wall that they reach.
 ///
-/// Positions and velocities of states and balances are in the order of the particles at the start.
+/// A state has positions and velocities in the order of the particles at the start.
 class Fluid : public Integrator {
  public:
   /// Throws InvalidArgument for options out of range and unknown methods, Error if the particles cannot be
   /// triangulated.
   Fluid(const FluidOptions& options, FluidOrdering ordering, Triangulate triangulate);
 
-  /// Does the same with the particles that the caller gives.
+  /// Starts from the caller's particles instead of those of the options.
   Fluid(const FluidOptions& options, Particles particles, FluidOrdering ordering, Triangulate triangulate);
 
   [[nodiscard]] MotionState state() const override;
   void set_state(const MotionState& state) override;
   StepReport step() override;
   [[nodiscard]] Balance balance() const override;
-  /// Does not count the triangulation, which another process holds.
+  /// Returns the memory held, in bytes, without the triangulation, which another process holds.
   [[nodiscard]] std::size_t bytes() const override;
 
   // ---- of the last step, in the order of the particles now

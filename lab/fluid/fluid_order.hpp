@@ -17,7 +17,7 @@ namespace meshorder {
 struct FluidOrdering {
   /// Method for the particles: "original" keeps their first order, "scrambled" mixes them at the start.
   std::string vertices = "auto";
-  std::string elements = "auto";  ///< of the tetrahedra, in each step; "original": as triangulated
+  std::string elements = "auto";  ///< method for the tetrahedra, in each step; "original": as triangulated
   /// Steps from one order of the particles to the next; 0: a `Reorderer` decides.
   Index every = 0;
   OrderOptions options = {};

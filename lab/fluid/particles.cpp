@@ -15,11 +15,11 @@
 namespace meshorder {
 namespace {
 
-/// Memory of a particle in all processes: the mesh, its triangulation and the arrays of a step.
+/// Bytes of memory for a particle in all processes: its share of mesh, triangulation and arrays of a step.
 constexpr double kBytesOfParticle = 2500;
-/// A particle has six or seven tetrahedra, and their corners are numbered by Index, too.
+/// There are six or seven tetrahedra for each particle, and an Index must also count their corners.
 constexpr Index kMostParticles = kMaxIndex / 32;
-constexpr double kSame = 1e-9;  ///< lengths that differ by less, relatively, are the same
+constexpr double kSame = 1e-9;  ///< lengths with a smaller relative difference are the same
 
 bool fills(const FluidOptions& options, int axis) {
   return options.column[axis] >= options.basin[axis] * (1 - kSame);

@@ -18,20 +18,20 @@ struct FluidOptions : MotionOptions {
   Point column{};         ///< extent of the water in the corner at the origin, m
   double spacing = 0;     ///< of the particles at the start, m
   double jitter = 0.2;    ///< largest shift of a particle along each axis at the start, in spacings
-  double wave = 0;        ///< height of a wave cos(πx / L) of the surface, as a share of the column's height
+  double wave = 0;        ///< amplitude of the surface's wave cos(πx / L), as a share of the column's height
   double density = 1000;  ///< kg/m³
   double viscosity = 0;   ///< kinematic, m²/s
   double courant = 0.5;   ///< largest distance that a particle moves in a step, in spacings
-  double evening = 0.05;  ///< largest shift of a particle along each axis that evens distances, in spacings
+  double evening = 0.05;  ///< largest shift along each axis to even out distances, in spacings
   double volume_gain = 0.2;  ///< share of lost volume that a step restores
-  SolveOptions solve{.tolerance = 1e-5, .max_iterations = 2000};  ///< of the pressure
+  SolveOptions solve{.tolerance = 1e-5, .max_iterations = 2000};  ///< for pressure and viscosity
 };
 
-/// Particles, or tetrahedra, in a chunk: a thread takes one chunk at a time, and sums are made by chunk.
+/// Number of particles, or tetrahedra, in a chunk: threads take one chunk at a time, sums are made by chunk.
 inline constexpr Index kParticlesInChunk = 1 << 12;
 
-/// The walls on which a particle lies; it moves only along them. Bit 2 · axis is the wall at 0, bit 2 · axis
-/// + 1 the wall at the basin's extent.
+/// The walls on which a particle lies, as bits; the particle moves only along them. Bit 2 · axis is the wall
+/// at 0, bit 2 · axis + 1 the wall at the basin's extent.
 using Walls = std::uint8_t;
 inline constexpr Walls kNoWalls = 0;
 
@@ -49,11 +49,11 @@ struct Particles {
   std::vector<Walls> walls;
 };
 
-/// Returns the particles at the start: those of a lattice, row by row along z, each moved a little within the
-/// water. Throws InvalidArgument as `check_options` does. O(particles).
+/// Returns the particles at the start: a lattice, row by row along z, with inner coordinates shifted by the
+/// jitter. Throws InvalidArgument as `check_options` does. O(particles).
 Particles particles_at_start(const FluidOptions& options);
 
-/// Moves a particle that left the basin back to its wall, on which it stays.
+/// Moves a particle that left the basin back to the wall, on which the particle then stays.
 void keep_inside(const FluidOptions& options, Point& position, Walls& walls);
 
 /// Throws InvalidArgument, which names the value, for options out of range and for more particles than the

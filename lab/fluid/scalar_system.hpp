@@ -12,9 +12,8 @@
 
 namespace meshorder {
 
-/// Linear elements of a mesh of tetrahedra with one unknown for each vertex: the matrix K of ∫ ∇q·∇p and the
-/// lumped masses M of ∫ q. Sums add tetrahedra by ascending number, so they are the same for any number of
-/// threads.
+/// The matrix K of ∫ ∇q·∇p and the lumped masses M of ∫ q, for linear tetrahedra with one unknown at each
+/// vertex. Sums add tetrahedra by ascending number, so they are the same for any number of threads.
 struct ScalarSystem {
   Graph pattern;                 ///< of K without its diagonal
   std::vector<double> values;    ///< of K, one for each neighbour, m
@@ -27,20 +26,20 @@ struct ScalarSystem {
 /// Assembles K and M. O(tetrahedra).
 ScalarSystem assemble(const FluidMesh& mesh, std::span<const Point> points);
 
-/// Solves (α K + β M) x = b by conjugate gradients with the diagonal as preconditioner; x is the start and
-/// becomes the result. Where `held` is not 0, x is given and stays. `tolerance` limits ‖b − A x‖ / ‖b‖. The
-/// result has the same bits for any number of threads.
+/// Solves A x = b, A = α K + β M, by conjugate gradients with the diagonal as preconditioner; x is the first
+/// guess and becomes the result. Where `held` is not 0, x is given and stays. `tolerance` limits
+/// ‖b − A x‖ / ‖b‖ over the other rows. The result has the same bits for any number of threads.
 SolveReport solve(const ScalarSystem& system, double alpha, double beta, std::span<const std::uint8_t> held,
                   std::span<const double> b, std::span<double> x, const SolveOptions& options);
 
-/// Returns ∫ ∇q·u of the piecewise linear u, for the hat function q of each vertex.
+/// Returns ∫ ∇q·u for the hat function q of each vertex and the piecewise linear u.
 std::vector<double> divergence(const FluidMesh& mesh, std::span<const Point> points,
                                std::span<const Point> u);
 
-/// Returns ∫ q ∇p of the piecewise linear p.
+/// Returns ∫ q ∇p for the hat function q of each vertex and the piecewise linear p.
 std::vector<Point> gradient(const FluidMesh& mesh, std::span<const Point> points, std::span<const double> p);
 
-/// Returns ∫ q ∇u of the piecewise linear u: row c is the gradient of its component c.
+/// Returns ∫ q ∇u likewise for a vector field u; row c is from the gradient of component c.
 std::vector<std::array<Point, 3>> gradient(const FluidMesh& mesh, std::span<const Point> points,
                                            std::span<const Point> u);
 

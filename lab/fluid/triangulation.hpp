@@ -18,17 +18,17 @@ struct Triangulation {
   std::vector<std::array<Index, 4>> neighbours;
 };
 
-/// Triangulates points, which must be finite. Of points that coincide, only one has tetrahedra; points that
-/// all lie in one plane have no tetrahedra. If all points differ, the triangulation does not depend on their
-/// numbers.
+/// A function that triangulates points, which must be finite. Of points that coincide, only one has
+/// tetrahedra; points that all lie in one plane have none. If all points differ, the triangulation does not
+/// depend on their numbers.
 using Triangulate = std::function<Triangulation(std::span<const Point>)>;
 
 /// Returns whether the program `meshorder-delaunay` is found.
 bool has_delaunay_program();
 
-/// Returns a function that triangulates by the program `meshorder-delaunay`, which is started once. The
-/// function checks the program's answers, and throws Error if the program has ended. Throws Error if the
-/// program is not found. It must be beside this program or on PATH, and is trusted like this program; a
+/// Starts the program `meshorder-delaunay` and returns a function that triangulates by it. The function
+/// checks the program's answers, and throws Error for a bad answer or if the program has ended. Throws Error
+/// if the program is not found beside this program or on PATH. The program is trusted like this program; a
 /// scenario cannot name another program.
 Triangulate delaunay_program();
 

@@ -48,7 +48,7 @@ void check_options(const ImplicitOptions& options, Index vertex_count) {
 struct BackwardEuler::Iterate {
   std::vector<double> velocities;
   std::vector<double> gradient;  ///< 0 at held vertices
-  std::vector<double> step;      ///< from the start of CG to its result
+  std::vector<double> step;      ///< CG's first guess, then its result
   std::vector<double> right_side;
 };
 
@@ -81,7 +81,7 @@ MotionState BackwardEuler::state() const {
 
 void BackwardEuler::set_state(const MotionState& state) {
   check_state(state, system_.vertex_count());
-  // the arrays stay where they are, at a distance from the forces (see kApart)
+  // copied into the old arrays, which are at a distance from the forces in memory (see kApart)
   take_state(state, positions_, velocities_);
   steps_ = state.step;
 }
@@ -235,7 +235,7 @@ SolveReport BackwardEuler::solve_once(Iterate& iterate, StepReport& report) {
   return solved;
 }
 
-/// Solves A δ = −g from δ = `iterate.step`.
+/// Solves A δ = −g; δ is `iterate.step`, on entry the first guess.
 void BackwardEuler::solve(Iterate& iterate, StepReport& report) {
   iterate.right_side.resize(iterate.gradient.size());
   std::transform(iterate.gradient.begin(), iterate.gradient.end(), iterate.right_side.begin(),
@@ -265,8 +265,8 @@ void BackwardEuler::solve(Iterate& iterate, StepReport& report) {
   }
 }
 
-/// Shortens the step until the potential decreases (Armijo). If the potential does not decrease, sets the
-/// step to 0 and returns false.
+/// Shortens the step until the potential decreases (Armijo). If no length decreases it, adds a warning and
+/// returns false.
 bool BackwardEuler::search_line(Iterate& iterate, StepReport& report) {
   constexpr double kEnough = 1e-4;     // of the decrease that the slope predicts
   constexpr double kRounding = 1e-13;  // of the potential's terms

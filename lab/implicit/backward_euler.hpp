@@ -82,7 +82,7 @@ class BackwardEuler final : public Integrator {
   HalfBlockCsr half_;
   HalfBlockCsrOf<float> rounded_half_;
   bool stores_half_ = false;
-  BlockCsr damping_;  ///< hβK at the step's start; only if β > 0 and Newton iterates or held vertices move
+  BlockCsr damping_;  ///< hβK at the step's start, if β > 0 and Newton iterates or held vertices move
   HeldVertices held_;
 
   Index steps_ = 0;

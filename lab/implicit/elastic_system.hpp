@@ -23,8 +23,8 @@ struct Body {
 /// of threads.
 class ElasticSystem {
  public:
-  /// Throws InvalidArgument for a body that is not of tetrahedra, or a vertex without mass that a tetrahedron
-  /// uses. O(simplices · log degree).
+  /// Throws InvalidArgument for a body that is not of tetrahedra, for a wrong number of densities, and for a
+  /// tetrahedron at a vertex without mass. O(simplices · log degree).
   ElasticSystem(std::span<const Point> points, const Body& body, Mass mass);
 
   /// Computes forces() = −∂E/∂x at the positions (see padded_positions), and matrix() = mass_factor M +

@@ -31,13 +31,13 @@ struct StepReport {
   // ADMM
   int admm_iterations = 0;
   int contact_iterations = 0;  ///< of the solver of the global step with contacts
-  Index contacts = 0;          ///< contacts with a force at the end of the step
+  Index contacts = 0;          ///< number of contacts with a force at the end of the step
   double penetration = 0.0;    ///< largest depth of a surface vertex in an obstacle at the end of the step, m
   Index vertices_in_itself = 0;  ///< surface vertices inside the body at the step's end
 
   double time_step = 0.0;             ///< s
   double residual = 0.0;              ///< of the last linear solve, or of the last ADMM iteration; relative
-  std::vector<std::string> warnings;  ///< messages, which name the vertex
+  std::vector<std::string> warnings;  ///< messages to users
   struct Seconds {
     double total = 0.0;
     double assembly = 0.0, solve = 0.0;                     // implicit
@@ -60,24 +60,25 @@ struct StepReport {
   } seconds;
 };
 
-/// Conserved quantities.
+/// The energies and momenta of a body.
 struct Balance {
   double kinetic = 0.0, elastic = 0.0, potential = 0.0;  ///< J; potential: of gravity, 0 at the origin
   Point momentum{};                                      ///< kg m/s
   Point angular_momentum{};                              ///< kg m²/s, about the origin
 };
 
-/// Time integration of a body. Processes vertices and elements in the given order. Vertices that no element
-/// uses stay where they are. Results have the same bits on every run and for any number of threads.
+/// Integrates the motion of a body. For solids, vertices and elements are processed in the given order, and
+/// vertices that no element uses stay where they are. Results have the same bits on every run and for any
+/// number of threads.
 class Integrator : public Polymorphic {
  public:
   [[nodiscard]] virtual MotionState state() const = 0;
-  /// Continues from `state`. Throws InvalidArgument if the sizes differ or a number is not finite. A state
-  /// without memory starts a motion.
+  /// Continues from `state`. Throws InvalidArgument if the sizes differ or a number is not finite. If
+  /// `state.memory` is empty, a motion starts; a fluid throws InvalidArgument.
   virtual void set_state(const MotionState& state) = 0;
 
-  /// Takes one time step. Throws Error, naming the vertex, if the motion is not finite; the state is then
-  /// that before the step.
+  /// Takes one time step. Throws Error, naming the vertex, if the motion is not finite; positions and
+  /// velocities are then those before the step.
   virtual StepReport step() = 0;
 
   [[nodiscard]] virtual Balance balance() const = 0;
@@ -85,7 +86,7 @@ class Integrator : public Polymorphic {
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 };
 
-/// Throws InvalidArgument unless the state has n vertices and is finite.
+/// Throws InvalidArgument unless the state has n vertices, is finite and has a step of at least 0.
 void check_state(const MotionState& state, Index n);
 
 /// Returns the state of a body whose vertices have these positions (kPaddedStride numbers for each vertex,
@@ -93,12 +94,12 @@ void check_state(const MotionState& state, Index n);
 MotionState state_of(Index steps, double time_step, std::span<const double> positions,
                      std::span<const double> velocities);
 
-/// Copies the positions and velocities of a state that passes `check_state` to such arrays.
+/// Copies the positions and velocities of a state that passes `check_state` to arrays as in state_of.
 void take_state(const MotionState& state, std::span<double> positions, std::span<double> velocities);
 
-/// Returns the conserved quantities of a body whose vertices have these masses, positions (kPaddedStride
-/// numbers for each vertex, see padded_positions), velocities and momenta (3 numbers), without its elastic
-/// energy. O(vertices).
+/// Returns the balance of a body whose vertices have these masses, positions (kPaddedStride numbers for each
+/// vertex, see padded_positions), velocities and momenta (3 numbers). The elastic energy is left 0.
+/// O(vertices).
 Balance balance_of(std::span<const double> masses, std::span<const double> positions,
                    std::span<const double> velocities, std::span<const double> momenta, const Point& gravity);
 

@@ -14,7 +14,7 @@ namespace meshorder {
 class HeldVertices {
  public:
   void clear();
-  /// Holds a vertex. If it is held twice, the later velocity counts.
+  /// Holds a vertex. If a vertex is held twice, the later velocity counts.
   void hold(Index vertex, const Point& velocity);
 
   /// Sets the velocities of the held vertices in a vector of 3 doubles for each vertex. O(held).
@@ -31,8 +31,8 @@ class HeldVertices {
   }
 
   /// Removes the rows and columns of the held vertices from a symmetric matrix: sets them to zero except for
-  /// the diagonal, a multiple of the identity. With zeros on the right-hand side they do not influence the
-  /// solution. O(their blocks · log row length).
+  /// the diagonal, a multiple of the identity. With zeros on the right-hand side, held vertices do not
+  /// influence the solution. O(their blocks · log row length).
   void remove_from(BlockCsr& matrix) const;
 
  private:

@@ -12,7 +12,7 @@ namespace meshorder {
 
 enum class Mass : std::uint8_t {
   lumped,      ///< a quarter of each tetrahedron's mass on each of its corners
-  consistent,  ///< ∫ρ φ_a φ_b: a matrix with the pattern of the stiffness
+  consistent,  ///< ∫ρ φ_a φ_b: a matrix with the pattern of the stiffness matrix
 };
 
 template <>

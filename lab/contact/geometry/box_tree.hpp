@@ -43,8 +43,8 @@ struct Box {
   [[nodiscard]] bool meets_segment(const Point& a, const Point& b) const;
 };
 
-/// A tree of boxes over items that do not move. Each inner node halves its items along the longest axis of
-/// their centres.
+/// A tree of boxes over items that do not move. Each inner node halves its items on the axis along which
+/// their centres extend furthest.
 class BoxTree {
  public:
   /// Builds the tree over one box for each item. O(n log n).
@@ -110,19 +110,19 @@ class BoxTree {
 
   struct Node {
     Box box;
-    Index first = 0;  // of the items of a leaf; of the two children of an inner node
-    Index count = 0;  // items of a leaf; 0 for an inner node
+    Index first = 0;  // a leaf's first item; an inner node's first child, which the second follows
+    Index count = 0;  // number of a leaf's items; 0 for an inner node
   };
 
   std::vector<Node> nodes_;
   std::vector<Index> things_;
 };
 
-/// Moves to the front the `left` items with the smallest coordinates along the longest axis of all centres.
-/// Among equal coordinates the lowest numbers come first. O(n).
+/// Moves the `left` items whose centres have the smallest coordinates to the front, on the axis along which
+/// the centres extend furthest. Among equal coordinates the lowest numbers come first. O(n).
 void halve(std::span<Index> things, Index left, std::span<const Point> centers);
 
-/// Orders items so that each group of `size` items is compact, by repeated halving at multiples of `size`.
+/// Orders items so that each run of `size` items is compact, by repeated halving at multiples of `size`.
 /// O(n log n).
 void sort_into_runs(std::span<Index> things, Index size, std::span<const Point> centers);
 

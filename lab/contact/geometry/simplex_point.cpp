@@ -43,7 +43,7 @@ TrianglePoint nearest_on_triangle(const Point& x, const Point& a, const Point& b
   const std::array<Point, 3> corners{a, b, c};
   const Point normal = cross(minus(b, a), minus(c, a));
   const double square = dot(normal, normal);
-  // negative for the edges that have x on their outer side
+  // entry k is negative if x is on the outer side of edge k
   std::array<double, 3> inside{};
   for (int k = 0; k < 3; ++k) {
     const Point& p = corners[k];

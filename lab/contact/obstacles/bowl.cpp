@@ -9,9 +9,9 @@
 namespace meshorder {
 namespace {
 
-/// The points within half the thickness of the bowl's middle. The middle is the part of a sphere at angles of
-/// at least `opening` from the axis, seen from the centre. Private functions take points relative to the
-/// centre.
+/// All points within half the thickness of a surface, "the middle": the part of a sphere whose directions
+/// from the centre make angles of at least `opening` with the axis. Private functions take points relative to
+/// the centre.
 class Bowl : public Obstacle {
  public:
   Bowl(const Point& center, const Point& axis, double radius, double thickness, double opening)
@@ -52,7 +52,7 @@ class Bowl : public Obstacle {
   [[nodiscard]] Point nearest_of_middle(const Point& p) const {
     const double length = norm(p);
     if (faces_middle(p)) return length > 0.0 ? scaled(radius_ / length, p) : scaled(-radius_, axis_);
-    // the rim: the middle's end in the half-plane of p and the axis
+    // the point of the middle's rim in the half-plane of p and the axis
     const Point aside = plus_scaled(p, -dot(p, axis_), axis_);
     const double off_axis = norm(aside);
     const Point sideways = off_axis > 0.0 ? scaled(1.0 / off_axis, aside) : across_axis();
@@ -65,8 +65,8 @@ class Bowl : public Obstacle {
     return scaled(1.0 / norm(across), across);
   }
 
-  /// If the segment from `a` to `p` crosses the middle, returns the surface point on the side of `a` to which
-  /// p must go back.
+  /// Returns the surface point on the side of `a` to which p must go back; nothing unless the segment from
+  /// `a` to p crosses the middle.
   [[nodiscard]] std::optional<SurfacePoint> back_through_wall(const Point& p, const Point& a) const {
     const std::optional<Point> crossing = first_crossing(a, p);
     if (!crossing) return std::nullopt;
@@ -79,8 +79,8 @@ class Bowl : public Obstacle {
     return SurfacePoint{plus_scaled(center_, 1.0, at), normal, dot(normal, minus(p, at))};
   }
 
-  /// Returns where the segment from `a` to `b` first crosses the middle. Only the sides of its ends decide
-  /// whether it crosses: rounding cannot turn a touch into a crossing.
+  /// Returns where the segment from `a` to `b` first crosses the middle. If an end is within the sphere, the
+  /// sides of both ends alone decide whether the sphere is crossed: rounding errors do not.
   [[nodiscard]] std::optional<Point> first_crossing(const Point& a, const Point& b) const {
     const bool from_within = side_of(a) < 0.0;
     const bool to_within = side_of(b) < 0.0;

@@ -22,7 +22,7 @@ Point unit_or_zero(const Point& a) {
   return length > 0.0 ? scaled(1.0 / length, a) : Point{};
 }
 
-/// An edge of a triangle: from its corner k to the next corner.
+/// The edge of `triangle` from its corner k to the next corner.
 struct HalfEdge {
   int from = 0;
   int to = 0;
@@ -30,8 +30,8 @@ struct HalfEdge {
   int k = 0;
 };
 
-/// Returns the half-edges, sorted by their two ends. Throws InvalidArgument unless each has exactly one
-/// opposite half-edge.
+/// Returns the half-edges, sorted by their two ends. Throws InvalidArgument if a half-edge has two equal
+/// ends, or not exactly one opposite half-edge.
 std::vector<HalfEdge> matched_half_edges(std::span<const Triangle> triangles) {
   const auto ends = [](const HalfEdge& half_edge) { return std::pair(half_edge.from, half_edge.to); };
   std::vector<HalfEdge> half_edges;
@@ -173,7 +173,7 @@ class ClosedSurface : public Obstacle {
       const Triangle& corners = triangles_[t];
       const TrianglePoint here =
           nearest_on_triangle(x, points_[corners[0]], points_[corners[1]], points_[corners[2]]);
-      // of equally near triangles takes the first, whatever the path through the tree
+      // of equally near triangles takes that with the lowest number, whatever the path through the tree
       if (here.squared_distance < best.squared_distance ||
           (here.squared_distance == best.squared_distance && t < triangle)) {
         best = here;
@@ -213,8 +213,8 @@ class ClosedSurface : public Obstacle {
     return result;
   }
 
-  /// Returns the point where the path from `from` to x enters the body, if x came from outside and either
-  /// left the body again or is so deep that its nearest point `natural` is on another side.
+  /// Returns where the path from `from` to x enters the body, if `from` is outside and x either has left the
+  /// body again or is so deep that `natural`, its nearest surface point, is on another side.
   [[nodiscard]] std::optional<SurfacePoint> back_through_surface(const Point& x, const Point& from,
                                                                  const SurfacePoint& natural) const {
     Point start = from;

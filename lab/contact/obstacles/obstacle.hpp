@@ -23,9 +23,9 @@ struct SurfacePoint {
 /// thread-safe.
 class Obstacle : public Polymorphic {
  public:
-  /// Returns the nearest point of the surface if it is within `reach` (m) of the vertex at `x`, or if x is
-  /// inside. The vertex was at `from`, outside, when the step began. If it has passed through a thin wall
-  /// since, the returned point is on the side of the wall that the vertex came from, and `distance` is
+  /// Returns the point of the surface nearest to the vertex at `x`, if that is within `reach` (m) or x is
+  /// inside. The vertex was at `from`, outside, when the step began. If the vertex has passed through a thin
+  /// wall, the returned point is on the side of the wall that the vertex came from, and `distance` is
   /// negative.
   [[nodiscard]] virtual std::optional<SurfacePoint> nearest(const Point& x, const Point& from,
                                                             double reach) const = 0;
@@ -43,8 +43,8 @@ std::unique_ptr<Obstacle> sphere(const Point& center, double radius);
 std::unique_ptr<Obstacle> bowl(const Point& center, const Point& axis, double radius, double thickness,
                                double opening);
 /// Returns the solid that a closed surface encloses, by signed distance to its triangles; `triangles` turn
-/// counterclockwise seen from outside. Throws InvalidArgument, which names an edge, for a surface that is not
-/// closed and oriented.
+/// counterclockwise seen from outside. Throws InvalidArgument, naming an edge, triangle or point, unless the
+/// surface is closed, oriented and finite.
 std::unique_ptr<Obstacle> closed_surface(std::vector<Point> points,
                                          std::vector<std::array<int, 3>> triangles);
 

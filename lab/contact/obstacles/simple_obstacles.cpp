@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// Obstacles whose distance is one line: the half-space and the sphere.
+// Obstacles with a simple formula for the distance: the half-space and the sphere.
 #include "base/point.hpp"
 #include "lab/contact/obstacles/obstacle.hpp"
 #include <meshorder/error.hpp>

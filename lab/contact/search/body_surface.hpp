@@ -10,7 +10,7 @@
 
 namespace meshorder {
 
-/// The surface of a body of tetrahedra: the faces that belong to only one of them.
+/// The surface of a body of tetrahedra: the faces that belong to only one tetrahedron.
 struct BodySurface {
   std::vector<std::array<Index, 3>>
       triangles;                ///< counterclockwise seen from outside, in the order of tetrahedra

@@ -49,7 +49,7 @@ struct Padded {
       result.parts[i] = hn::MulAdd(hn::Set(RowTag(), factor), other.parts[i], parts[i]);
     return result;
   }
-  /// Replace each number by that of `other` if the latter is smaller, or larger; NaN replaces nothing.
+  /// Replaces each number by that of `other` if that is smaller (raise_to: larger); NaN replaces nothing.
   HWY_INLINE void lower_to(const Padded& other) {
     MESHORDER_UNROLL
     for (Index i = 0; i < kParts; ++i)
@@ -68,8 +68,8 @@ struct Padded {
   }
 };
 
-/// Fits an affine map to the corners' motion by least squares. Sets the ends of the box around the corners,
-/// padded.
+/// Fits an affine map to the corners' motion by least squares. Sets lower_end and upper_end to the padded
+/// ends of the box around the corners.
 void fit_motion(std::span<const Corner> corners, const Shape& shape, const double* positions, Motion& motion,
                 double* lower_end, double* upper_end) {
   const double infinity = std::numeric_limits<double>::infinity();

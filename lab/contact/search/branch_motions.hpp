@@ -9,11 +9,11 @@
 
 namespace meshorder {
 
-/// Motions of branches of tetrahedra from their rest shape. Each motion is nearly an affine map, and an
-/// affine map keeps points inside or outside. The deviation from the map bounds the error.
+/// The motion of each branch of tetrahedra from rest, as an affine map and a bound of the deviation from the
+/// map. An affine map keeps points inside or outside of tetrahedra.
 class BranchMotions {
  public:
-  /// x = constant + columns · X for a corner at X at rest, to within the deviation.
+  /// The affine map constant + columns · X. A corner at X at rest is within `deviation` of its image.
   struct Motion {
     alignas(64) std::array<std::array<double, 4>, 3> columns{};  ///< the fourth of each is 0
     std::array<double, 4> constant{};
@@ -24,7 +24,7 @@ class BranchMotions {
 
   BranchMotions(const TetrahedronLeaves& tetrahedra, std::span<const Point> rest);
 
-  /// Fits the motion of the branch to `positions`, and sets its box. O(tetrahedra of the branch).
+  /// Fits the motion of the branch to `positions`; sets the branch's box. O(tetrahedra of the branch).
   void update(Index branch, std::span<const double> positions, TetrahedronLeaves& tetrahedra);
 
   [[nodiscard]] const Motion& motion(Index branch) const { return motions_[branch]; }

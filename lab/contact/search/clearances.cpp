@@ -15,9 +15,9 @@ namespace {
 using Doubles = hn::CappedTag<double, kBatch>;
 constexpr Index kDoubles = static_cast<Index>(MaxLanes(Doubles()));
 
-/// Returns the points that may be inside: points whose clearance is at most the sum of two distances, both
-/// mapped back to the rest shape. One is the distance of the point from its image under the affine motion,
-/// the other the deviation of the branch's corners.
+/// Returns the points that may be inside: those whose clearance is at most ‖inverse map‖ (d + e), where d is
+/// the distance of the point from its image under the affine motion, and e the deviation of the branch's
+/// corners.
 std::uint64_t points_in_doubt(const PointCluster& cluster, const double* rest, const float* clearances,
                               const BranchMotions::Motion& motion) {
   const Doubles d;
@@ -36,7 +36,7 @@ std::uint64_t points_in_doubt(const PointCluster& cluster, const double* rest, c
     }
     const auto moved =
         hn::Mul(hn::Set(d, motion.inverse_norm), hn::Add(hn::Sqrt(square), hn::Set(d, motion.deviation)));
-    // false if one is NaN
+    // false if a number is NaN
     const auto less = hn::Lt(moved, hn::PromoteTo(d, hn::Load(floats, clearances + i)));
     known |= std::uint64_t{bits_of(d, less)} << static_cast<unsigned>(i);
   }
@@ -89,7 +89,7 @@ bool meets_box(const PointCluster& cluster, const TetrahedronLeaves& tetrahedra,
   return meets;
 }
 
-/// Returns the cluster with a box that reaches further on all sides.
+/// Returns the cluster with its box extended by `margin` on all sides.
 PointCluster grown(PointCluster cluster, float margin) {
   for (int c = 0; c < 3; ++c) {
     cluster.lower[c] -= margin;
@@ -109,7 +109,7 @@ Clearances::Clearances(TetrahedronLeaves& tetrahedra, BranchMotions& motions,
     update_boxes(tetrahedra, branch, positions);
   }
   for (Index leaf = 0; leaf < tetrahedra.leaves; ++leaf) update_planes(tetrahedra, leaf, positions);
-  // nothing is known of branches further away; nearly all branches whose boxes meet in motion are nearer
+  // branches further away get no clearances; few of them meet the cluster's box in motion
   const auto margin = static_cast<float>(0.125 * mean_side(tetrahedra));
   const float known_margin = margin - static_cast<float>(largest_coordinate(rest) * 0x1p-21);
   for_each_chunk(index_size(clusters), kClustersAtOnce, [&](Index /*chunk*/, Index begin, Index end) {

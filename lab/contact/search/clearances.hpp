@@ -23,7 +23,7 @@ class Clearances {
   Clearances(TetrahedronLeaves& tetrahedra, BranchMotions& motions, std::span<PointCluster> clusters,
              std::span<const Point> rest);
 
-  /// Returns the points of cluster c that may be inside tetrahedra of the branch: all if nothing is known.
+  /// Returns the points of cluster c that may be inside tetrahedra of the branch; all if nothing is known.
   [[nodiscard]] std::uint64_t in_doubt(Index c, Index branch, const PointCluster& cluster,
                                        const BranchMotions& motions) const;
 
@@ -32,7 +32,7 @@ class Clearances {
 
  private:
   struct Cluster {
-    std::vector<Index> branches;      ///< near by, ascending
+    std::vector<Index> branches;      ///< near the cluster, ascending
     AlignedVector<float> clearances;  ///< kMaxPoints for each of these branches
     alignas(
         64) std::array<std::array<double, PointCluster::kMaxPoints>, 3> rest{};  ///< x, y, z of each point

@@ -12,7 +12,7 @@
 namespace meshorder {
 namespace {
 
-/// Neighbours in a cluster: one distance can show that all of them are out of reach.
+/// Number of neighbours in a cluster: one distance can show that all of them are out of reach.
 constexpr Index kInCluster = 64;
 
 Contact contact_with(Index vertex, const SurfacePoint& place, double friction, std::int32_t obstacle) {
@@ -27,7 +27,7 @@ Contact contact_with(Index vertex, const SurfacePoint& place, double friction, s
 }
 
 /// Returns whether an obstacle is out of reach of a box around some vertices and their earlier positions.
-/// Then no vertex is near the obstacle or went through it: a distance changes by at most the path length.
+/// If so, no vertex is near the obstacle or went through it: a distance changes by at most the path length.
 bool out_of_reach(const Obstacle& obstacle, const Box& box, double reach) {
   constexpr double kAboveRounding = 1.0 + 1e-9;
   const Point center = scaled(0.5, plus_scaled(box.lower, 1.0, box.upper));

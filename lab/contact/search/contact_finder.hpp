@@ -30,7 +30,7 @@ struct ContactOptions {
   double reach = 0.0;
 };
 
-/// The depth of a body in obstacles and in itself.
+/// The depth of a body in obstacles, and the number of its surface vertices inside the body itself.
 struct Penetration {
   double into_obstacles = 0.0;  ///< depth of the deepest surface vertex, m
   Index vertices_in_itself = 0;
@@ -40,7 +40,8 @@ struct Penetration {
 /// any number of threads, and after any earlier calls.
 class ContactFinder {
  public:
-  /// Takes the body at rest at `points`. Throws InvalidArgument for simplices that are no tetrahedra.
+  /// Takes the body at rest at `points`. Throws InvalidArgument for simplices that are no tetrahedra, corners
+  /// that are not among the points, a negative reach and a missing obstacle.
   ContactFinder(const Simplices& simplices, std::span<const Point> points, ContactOptions options);
 
   /// Finds the contacts of the surface's vertices at `positions`; the vertices were at `from` when the step
@@ -63,7 +64,7 @@ class ContactFinder {
     double deepest = 0.0;
   };
 
-  /// Finds the obstacles near each cluster, whose vertices are at any of the positions in `places`.
+  /// Finds the obstacles within `reach` of each cluster at any of the positions in `places`.
   void find_near(std::initializer_list<std::span<const double>> places, double reach);
   void check(std::span<const double> positions, const char* function) const;
 

@@ -12,15 +12,15 @@
 namespace meshorder {
 namespace {
 
-/// Share of its depth that a vertex must lose in a step if it is inside the body itself at the step's start.
+/// Share of the depth that a vertex must lose in a step if it begins the step inside the body itself.
 /// Losing the full depth would give vertices arbitrary speeds, and the body would gain energy.
 constexpr double kWayOut = 0.5;
 /// Gap to the body's own surface at which vertices are held, as a share of the tolerance, so that rounding
 /// does not put them inside.
 constexpr double kClearance = 0.1;
 
-/// Returns the gap to the body itself that a vertex must have at the end of a step if it had the gap `gap` at
-/// the start. Adds the tolerance, since halving a depth never reaches 0.
+/// Returns the gap to the body itself that a vertex must have at a step's end if the gap was `gap` at the
+/// start. Adds the tolerance, since halving a depth never reaches 0.
 double required_gap(double gap, double tolerance) {
   return std::min(kClearance * tolerance, (gap < 0.0 ? (1.0 - kWayOut) * gap : gap) + tolerance);
 }

@@ -15,14 +15,13 @@ class ContactSet {
  public:
   explicit ContactSet(ContactFinder finder) : finder_(std::move(finder)) {}
 
-  /// Begins a step in which vertices were at `from` (padded, see padded_positions; must outlive the step):
-  /// earlier contacts are forgotten.
+  /// Begins a step from the positions `from` (padded, see padded_positions; must outlive the step), and
+  /// forgets earlier contacts.
   void begin(std::span<const double> from);
 
   /// Finds the contacts at these positions, in ContactFinder's order. `forces` are the forces of contacts(),
-  /// empty if nothing was solved since `begin`. Returns whether a contact that was found
-  /// is violated by more than `tolerance`, m. Contacts with the body itself keep a gap of a tenth of
-  /// `tolerance`.
+  /// empty if nothing was solved since `begin`. Returns whether a contact that was found is violated by more
+  /// than `tolerance`, m. Contacts with the body itself keep a gap of a tenth of `tolerance`.
   bool update(std::span<const double> positions, std::span<const double> forces, double tolerance);
 
   [[nodiscard]] std::span<const Contact> contacts() const noexcept { return contacts_; }

@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-/// Computes normal = (b − a) × (c − a): a, b, c are counterclockwise seen from the side to which it points.
+/// Computes normal = (b − a) × (c − a); it points to the side from which a, b, c are counterclockwise.
 template <class Value>
 HWY_INLINE void plane_through(const Value (&a)[3], const Value (&b)[3], const Value (&c)[3],
                               Value (&normal)[3]) {
@@ -105,7 +105,7 @@ struct LeafLanes {
     }
   }
 
-  /// Returns the smallest height over the four planes.
+  /// Returns, for each tetrahedron, the smallest height over its four planes.
   HWY_INLINE FloatVector height(float x, float y, float z) const {
     const Floats d;
     const FloatVector p[3] = {hn::Set(d, x), hn::Set(d, y), hn::Set(d, z)};

@@ -16,14 +16,14 @@ struct LeafHit {
   std::uint32_t lanes = 0;
 };
 
-/// Sets the planes of a leaf. Its box must be up to date.
+/// Computes the planes of a leaf at `positions`. The leaf's box must be up to date.
 void update_planes(TetrahedronLeaves& tetrahedra, Index leaf, std::span<const double> positions);
 /// Lowers the clearances of the task's points; `clearances` has one number for each point of the cluster. A
-/// point's clearance is its smallest distance from those tetrahedra of the leaf that do not have it as a
+/// point's clearance is its smallest distance from the leaf's tetrahedra, without those of which it is a
 /// corner. The distance from a tetrahedron is the largest signed distance from its planes, negative inside.
 void lower_clearances(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
                       std::span<const double> positions, std::span<float> clearances);
-/// Appends the task's points that are inside all planes of some tetrahedron of which they are no corner.
+/// Appends a hit for each point of the task inside all planes of a tetrahedron of which it is no corner.
 void hits_of(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
              std::span<const double> positions, std::vector<LeafHit>& hits);
 

@@ -25,9 +25,9 @@ class RestSurface {
   RestSurface(std::vector<std::array<Index, 3>> triangles, std::span<const Point> points);
 
   /// Returns the point of the surface nearest to x, among triangles without the corner `left_out`. Of several
-  /// triangles that are equally near (to 1e-9), takes the one that faces x most, then the first: the
-  /// numbering of triangles decides only between mirror images. The triangle is kNone if there are no
-  /// triangles. `within` is an upper bound of the distance, m; a small one saves time.
+  /// triangles that are equally near (to 1e-9), takes the one that faces x most; the numbering of triangles
+  /// decides only between mirror images. The triangle is kNone if there is none to find. `within` is an upper
+  /// bound of the distance, m; a small bound saves time.
   [[nodiscard]] Place nearest(const Point& x, Index left_out = kNone,
                               double within = std::numeric_limits<double>::infinity()) const;
 

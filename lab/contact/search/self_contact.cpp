@@ -11,7 +11,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kPlacesAtOnce = 64;  // vertices in a task of finding nearest surface points
+constexpr Index kPlacesAtOnce = 64;  // number of vertices for which a task finds nearest points
 
 /// Makes the contact of a vertex with a point of the surface. Returns false if the triangle has no area.
 bool make_contact(Index vertex, const std::array<Index, 3>& triangle, const std::array<double, 3>& weights,
@@ -43,7 +43,7 @@ RestSurface::Place SelfContact::way_out(const VertexInside& inside) const {
   const std::array<Index, 4> corners = search_.corners(inside.tetrahedron);
   Point place{};
   for (int k = 0; k < 4; ++k) place = plus_scaled(place, inside.weights[k], rest_[corners[k]]);
-  // upper bound: the distance of a corner on the surface, since this corner has a triangle without the vertex
+  // upper bound: the distance to any corner on the surface, which has a triangle without the vertex
   double within = std::numeric_limits<double>::infinity();
   for (const Index corner : corners) {
     if (on_surface_[corner]) within = std::min(within, kAboveRounding * norm(minus(place, rest_[corner])));

@@ -33,7 +33,7 @@ class SelfContact {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  /// Returns the way out of the rest shape, through any triangle without the vertex.
+  /// Returns the nearest point of the rest surface, among triangles without the vertex.
   [[nodiscard]] RestSurface::Place way_out(const VertexInside& inside) const;
 
   std::vector<Point> rest_;

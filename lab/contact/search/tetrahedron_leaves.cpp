@@ -28,7 +28,6 @@ HWY_INLINE Value greater(Value a, Value b) {
   return ManyLanes::choose(b - a, b, a);
 }
 
-/// Returns the smallest lane; the largest lane.
 HWY_INLINE double min_lane(ManyLanes::Value value) {
   alignas(64) double lanes[kBatch];
   ManyLanes::store(value, lanes);
@@ -40,7 +39,7 @@ HWY_INLINE double greatest_lane(ManyLanes::Value value) {
   return *std::max_element(lanes, lanes + ManyLanes::kCount);
 }
 
-/// Extends the box by the corners of some lanes.
+/// Extends the box of each lane by the corners of its tetrahedron, beginning with lane `lane` of the leaf.
 HWY_INLINE void corner_boxes(const Index* corners, const double* positions, Index lane,
                              ManyLanes::Value (&lower)[3], ManyLanes::Value (&upper)[3]) {
   for (int k = 0; k < 4; ++k) {
@@ -103,7 +102,7 @@ void read_points(PointCluster& cluster, const double* positions) {
   }
 }
 
-/// Returns the lanes of sixteen boxes that meet a box, as bits.
+/// Returns which of sixteen boxes meet a box, as bits.
 HWY_INLINE std::uint32_t meeting(const float* boxes, const std::array<float, 3>& lower,
                                  const std::array<float, 3>& upper) {
   const Floats d;

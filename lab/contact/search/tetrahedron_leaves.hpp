@@ -15,10 +15,10 @@
 
 namespace meshorder {
 
-/// Tetrahedra and boxes are tested sixteen at a time: an AVX-512 register has as many floats.
+/// Number of tetrahedra, or boxes, that are tested at a time: an AVX-512 register has as many floats.
 inline constexpr Index kLeaf = 16;
-/// Leaves in a branch, at most kLeaf: fewer leaves make its motion closer to affine, but there are more
-/// branches.
+/// Number of leaves in a branch, at most kLeaf: fewer leaves make a branch's motion closer to affine, but
+/// make more branches.
 inline constexpr Index kBranch = 8;
 
 /// Returns the nearest float; the largest finite one on overflow.
@@ -41,21 +41,21 @@ struct PointCluster {
   explicit PointCluster(std::span<const Index> some);
 };
 
-/// Tetrahedra in leaves of sixteen that are neighbours at rest, and branches of kBranch leaves: the data that
-/// a search needs in motion. Ends of boxes and points are rounded alike, which keeps their order. Vertices
-/// and tetrahedra that are not finite are never found.
+/// Tetrahedra in leaves (sixteen that are neighbours at rest) and branches (kBranch leaves): the data that a
+/// search needs in motion. Ends of boxes and points are rounded alike, which keeps their order. Vertices and
+/// tetrahedra that are not finite are never found.
 struct TetrahedronLeaves {
   Index leaves = 0;
   Index branches = 0;
-  /// Corner k of lane l of leaf i at 16 · (4i + k) + l. Lanes after the last tetrahedron repeat it.
+  /// Entry 16 · (4i + k) + l: corner k in lane l of leaf i. Lanes after the last tetrahedron repeat it.
   AlignedVector<Index> corners;
   AlignedVector<Index> numbers;  ///< the caller's numbers of the tetrahedra; −1 after the last
-  /// End e (the three lower ends, then the upper ends) of the box of leaf l of branch b at 16 · (6b + e) + l.
+  /// Entry 16 · (6b + e) + l: end e of the box of leaf l in branch b; three lower ends, then the upper ends.
   AlignedVector<float> leaf_boxes;
   AlignedVector<float> branch_boxes;           ///< boxes of the branches, in the same layout
   std::vector<std::array<double, 3>> centers;  ///< of leaves; the planes of a leaf are relative to its center
-  /// Planes of the faces, by update_planes: number q of face k of lane l of leaf i at 16 · (16i + 4k + q) +
-  /// l. The four numbers are the inward normal and the offset, raised by a bound of rounding errors.
+  /// Planes of the faces, by update_planes. Entry 16 · (16i + 4k + q) + l: number q of face k in lane l of
+  /// leaf i. The four numbers are the inward normal and the offset, raised by a bound of rounding errors.
   AlignedVector<float> planes;
 
   /// Takes tetrahedra in the order of leaves. Does not set boxes and planes.
@@ -82,12 +82,12 @@ struct LeafTask {
 
 /// Sets the boxes of the branch's leaves at `positions`. O(tetrahedra of the branch).
 void update_boxes(TetrahedronLeaves& tetrahedra, Index branch, std::span<const double> positions);
-/// Reads the positions of the cluster's points.
+/// Sets the positions and the box of the cluster's points.
 void update_points(PointCluster& cluster, std::span<const double> positions);
-/// Appends the branches whose box meets the cluster's, ascending.
+/// Sets `branches` to those whose box meets the cluster's box, ascending.
 void branches_at(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,
                  std::vector<Index>& branches);
-/// Appends the branch's leaves whose boxes contain points of the mask `points` of the cluster.
+/// Appends a task for each leaf of the branch whose box contains points of the cluster in the mask `points`.
 void leaves_at(const TetrahedronLeaves& tetrahedra, Index branch, const PointCluster& cluster,
                std::uint64_t points, std::vector<LeafTask>& tasks);
 

@@ -22,8 +22,8 @@ namespace {
 constexpr Index kBranchesAtOnce = 16;  // branches, or clusters, in a task
 constexpr Index kLeavesAtOnce = 256;
 
-/// The tetrahedra that are not flat at `points`, with corners in the sequence that gives a positive volume
-/// there, in the order of leaves.
+/// The tetrahedra that are not flat at `points`, in the order of leaves. Corners are in the sequence that
+/// gives a positive volume at `points`.
 struct SortedTetrahedra {
   std::vector<std::array<Index, 4>> corners;
   std::vector<Index> numbers;
@@ -107,7 +107,7 @@ struct TetrahedronSearch::State {
     Index branch = 0;
     std::uint64_t points = 0;
   };
-  /// Work for a cluster and its results.
+  /// The tasks and the results of a cluster.
   struct Search {
     std::vector<Index> branches;
     std::vector<BranchTask> branch_tasks;
@@ -121,7 +121,7 @@ struct TetrahedronSearch::State {
   BranchMotions motions;
   Clearances clearances;
   std::vector<Search> searches;  ///< one for each cluster
-  std::vector<Index> places;     ///< of each tetrahedron in the leaves, by its number; −1 if it is flat
+  std::vector<Index> places;  ///< for each tetrahedron's number: its place in the leaves; −1 if it is flat
   std::vector<std::atomic<bool>> wanted_branches;
   std::vector<std::atomic<bool>> wanted_leaves;
 

@@ -16,15 +16,15 @@ struct ContactRows {
   std::vector<std::array<Index, 4>> places;  ///< indices in `vertices` of each contact's vertices; −1: absent
   std::vector<std::array<double, 4>> weights;  ///< of each contact; 0 where absent
   std::vector<Point> directions;               ///< of each row
-  std::vector<Index> frictional;  ///< contacts with friction; the k-th has row_of(k) and the next row
+  std::vector<Index> frictional;  ///< contacts with friction; the k-th also has row_of(k) and the row after
 
   [[nodiscard]] Index contacts() const noexcept { return static_cast<Index>(places.size()); }
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(directions.size()); }
   [[nodiscard]] Index row_of(Index k) const noexcept { return contacts() + 2 * k; }
 };
 
-/// Throws InvalidArgument for a contact without a vertex, for a vertex that is not among 0 … n−1, and for
-/// numbers that are not finite.
+/// Throws InvalidArgument for a contact without its first vertex, for a vertex that is not among 0 … n−1, for
+/// numbers that are not finite, for weights that are all 0, and for negative friction.
 void check_contacts(std::span<const Contact> contacts, Index n);
 
 /// Throws InvalidArgument unless the sizes of a solve's vectors b, `from` and x are kPaddedStride · n.

@@ -16,7 +16,7 @@ namespace {
 
 // softness (see ForceSolveOptions) as a share of the tolerance: too small to affect the result
 constexpr double kSoftness = 0.01;
-// rounds of tangential bounds without progress, after which the next round is the last
+// after this many rounds of tangential bounds without progress, the next round is the last
 constexpr int kMaxFailures = 3;
 // An eighth of the multiplications is reserved for the last round. Each earlier round takes half of the
 // multiplications that are left.
@@ -75,8 +75,8 @@ class ContactOperator final : public ForceOperator {
     meshorder::multiply(rows_, std::span<const Real>(moved_), result);
   }
 
-  /// Multiplies by W C D⁻¹ A D⁻¹ Cᵀ W with D the diagonal of A and W that of (C D⁻¹ Cᵀ)⁻¹: the lumped
-  /// preconditioner with weights by stiffness (Rixen, Farhat 1999).
+  /// Multiplies by W C D⁻¹ A D⁻¹ Cᵀ W, where D is the diagonal of A and W the inverse of the diagonal of
+  /// C D⁻¹ Cᵀ: the lumped preconditioner with weights by stiffness (Rixen, Farhat 1999).
   void precondition(std::span<const double> moves, std::span<double> result) override {
     for (std::size_t k = 0; k < weighed_.size(); ++k) weighed_[k] = moves[k] / scale_[k];
     multiply_transposed(rows_, weighed_, touched_);
@@ -137,7 +137,7 @@ class ContactOperator final : public ForceOperator {
 
   const SparseMatrix& matrix_;
   const CholeskyFactor<Real>& factor_;
-  AlignedVector<Real> load_, moved_;  ///< of all vertices; 0 outside the reach
+  AlignedVector<Real> load_, moved_;  ///< of all vertices; only those of contacts are used
   std::vector<Index> place_of_;       ///< of all vertices; −1 except within take_submatrix
   std::vector<double> diagonal_;      ///< of A
   ContactRows rows_;
@@ -145,7 +145,7 @@ class ContactOperator final : public ForceOperator {
   std::vector<Offset> offsets_;  ///< of the part of A at contacts' vertices
   std::vector<Index> columns_;
   std::vector<double> values_;
-  std::vector<double> scale_;  ///< of each row: displacement by D⁻¹ under a force of 1
+  std::vector<double> scale_;                       ///< of each row: the diagonal entry of C D⁻¹ Cᵀ
   std::vector<double> touched_, pulled_, weighed_;  ///< scratch
 };
 

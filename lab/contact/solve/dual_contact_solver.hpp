@@ -13,20 +13,20 @@ namespace meshorder {
 
 struct ContactSolverOptions {
   double tolerance = 1e-3;   ///< bound of the relative residual, > 0; see DualContactSolver
-  int max_iterations = 200;  ///< of one call: multiplications by A⁻¹ at contacts
+  int max_iterations = 200;  ///< of one call: multiplications by S, see DualContactSolver
 };
 
 struct ContactSolveReport {
   int iterations = 0;
-  double residual = 0.0;  ///< relative
+  double residual = 0.0;  ///< relative, see DualContactSolver
   bool converged = false;
   double violation = 0.0;  ///< largest remaining depth of a contact, m
-  Index pushing = 0;       ///< contacts with a force
+  Index pushing = 0;       ///< number of contacts with a normal force
 };
 
 /// Solves the global step with contacts: minimises ½xᵀA x − bᵀx subject to normal · Σ w x ≥ offset for every
 /// contact. Contacts push and never pull. With friction the force along the surface is at most the
-/// coefficient times the force across the surface, and opposes the motion since `from`.
+/// coefficient times the normal force, and opposes the motion since `from`.
 ///
 /// Solves the dual problem: the contact forces λ minimise ½λᵀSλ − gᵀλ with S = C A⁻¹Cᵀ and g the depths of
 /// the contacts without forces; then x = A⁻¹(b + Cᵀλ). ("Uzawa" in scenarios means "dual".) A
@@ -37,14 +37,14 @@ struct ContactSolveReport {
 ///
 /// `tolerance` bounds the norm of the projected gradient relative to the norm of the positive depths g: about
 /// the error of the contacts' positions relative to the depth without forces. Where contacts contradict or
-/// repeat each other, each may stay as deep as tolerance / 100 of the distance by which its force moves its
-/// vertex. Then repeated contacts share the force. For contradicting contacts, the solution lies between
+/// repeat each other, each may stay as deep as tolerance / 100 times the distance by which its force moves
+/// its vertex. Then repeated contacts share the force. For contradicting contacts, the solution lies between
 /// them, `converged` is false, and `violation` is the remaining depth.
 ///
-/// With friction the bounds of tangential forces follow from the last round's normal forces (Tresca's fixed
-/// point; Haslinger 1983), until the forces meet `tolerance` with the bounds that follow from them. If the
-/// rounds do not converge (a body may jam), the last bounds are kept: tangential forces may then lie outside
-/// their cones, and `converged` is false.
+/// With friction, each round bounds the tangential forces by the last round's normal forces (Tresca's fixed
+/// point; Haslinger 1983), until the forces meet `tolerance` with the bounds that they imply. If the rounds
+/// do not converge (a body may jam), the last bounds are kept: tangential forces may then lie outside their
+/// cones, and `converged` is false.
 template <class Real>
 class DualContactSolver : public Polymorphic {
  public:
@@ -54,10 +54,10 @@ class DualContactSolver : public Polymorphic {
                                                  const CholeskyFactor<Real>& factor,
                                                  const ContactSolverOptions& options);
 
-  /// Replaces x, a first guess, by the solution; without contacts, the solution is A⁻¹b. Vectors have
-  /// kPaddedStride numbers for each vertex. The forces of the last call are the first guess for contacts with
-  /// the same vertex and obstacle, until `forget`. Throws InvalidArgument for contacts of vertices that do
-  /// not exist and numbers that are out of range. Always terminates; the report gives the remaining residual.
+  /// Sets x to the solution; without contacts, the solution is A⁻¹b. Vectors have kPaddedStride numbers for
+  /// each vertex. The forces of the last call are the first guess for contacts with the same first vertex and
+  /// obstacle, until `forget`. Throws InvalidArgument as check_contacts does, and for vectors of other sizes.
+  /// Always terminates; the report gives the remaining residual.
   virtual ContactSolveReport solve(std::span<const Contact> contacts, std::span<const Real> b,
                                    std::span<const double> from, std::span<Real> x) = 0;
 

@@ -11,7 +11,7 @@ namespace {
 
 // a force counts as on the rim of its disc if (length / radius)² is at least this
 constexpr double kOnRim = 1.0 - 1e-9;
-// a step solves for its face, the forces that it selects, up to this share of the residual
+// share of the residual up to which a step solves for its face, the forces that it selects
 constexpr double kFaceTolerance = 0.1;
 // steps allowed without a new minimum of the energy
 constexpr int kPatience = 10;
@@ -208,15 +208,16 @@ class Minimiser {
     }
   }
 
-  /// Moves forces that are about to reach their bounds along the gradient; they would limit every careful
-  /// step.
+  /// Lets forces that are about to reach their bounds step along the gradient; else they would limit every
+  /// careful step.
   void follow_gradient_to_bounds() {
     for (Index row = 0; row < bounds_.normals; ++row) {
       if (leaves(row)) step_[row] = g_[row] / options_.scale[row];
     }
   }
 
-  /// Takes the step and projects onto the bounds; a careful step is halved until it lowers the energy.
+  /// Takes the step, projected onto the bounds; halves a careful step until it lowers the energy. Returns
+  /// false if no step was taken.
   bool take_step(bool careful) {
     for (double way = 1.0; way >= kMinWay; way *= 0.5) {
       for (std::size_t i = 0; i < trial_.size(); ++i) trial_[i] = x_[i] + way * step_[i];
@@ -255,11 +256,11 @@ class Minimiser {
   const ForceSolveOptions& options_;
   std::span<double> x_, g_;
   std::vector<Freedom> freedom_;             ///< of each row
-  std::vector<double> stiffening_;           ///< by the rim's curvature
-  std::vector<double> step_, step_product_;  ///< S step
+  std::vector<double> stiffening_;           ///< of each row: added to S by the rim's curvature
+  std::vector<double> step_, step_product_;  ///< step_product_ = S step_
   std::vector<double> trial_, r_, z_, direction_, product_;
   double energy_ =
-      0.0;  ///< minus the lowest energy so far; the total would lose the last decreases to rounding
+      0.0;  ///< relative to the lowest so far; the last decreases of the total would be lost to rounding
   std::vector<double> best_, best_gradient_;
   ForceSolveReport report_;
 };

@@ -42,7 +42,7 @@ struct ForceSolveReport {
   double residual = 0.0;  ///< the projected gradient's norm, softness included
 };
 
-/// Minimises ½λᵀSλ − gᵀλ within the bounds. Replaces λ (`forces`, feasible) and `gradient`, which is g − S λ.
+/// Minimises ½λᵀSλ − gᵀλ within the bounds. Updates `forces`, a feasible λ, and `gradient`, which is g − S λ.
 ///
 /// Each step selects the positive forces. It also selects the forces that are 0 and would grow, if they
 /// promise a larger gain than the positive forces. It solves for the selected forces by conjugate gradients
@@ -61,8 +61,8 @@ ForceSolveReport minimise_forces(ForceOperator& matrix, const ForceBounds& bound
 void project(const ForceBounds& bounds, std::span<double> forces);
 
 /// Returns the norm of the projected gradient, in units of S λ; 0 only at the minimum. For a normal force
-/// this is the part of g − S λ along which it can move. For a force in a disc it is scale · ‖λ − P(λ +
-/// gradient / scale)‖ with P the projection, which is continuous where forces leave the rim.
+/// this is the part of g − S λ along which the force can move. For a force in a disc it is scale · ‖λ − P(λ +
+/// gradient / scale)‖, where P is the projection; this norm is continuous where forces leave the rim.
 double projected_gradient(const ForceBounds& bounds, std::span<const double> scale,
                           std::span<const double> forces, std::span<const double> gradient);
 

@@ -32,7 +32,7 @@ class RememberedForces {
   }
   void forget() { entries_.clear(); }
 
-  /// Returns the force of the contact with this contact's vertex and obstacle; 0 if there was none.
+  /// Returns the remembered force for this contact's first vertex and obstacle; 0 if there is none.
   /// O(log contacts).
   [[nodiscard]] ContactForce of(const Contact& contact) const {
     const auto after = std::upper_bound(

@@ -72,10 +72,10 @@ class RowSweeps {
   bool backwards_ = false;
 };
 
-/// Returns the chunks of a matrix's rows. O(chunks · log rows).
+/// Returns the bounds of the chunks of rows. O(chunks · log rows).
 template <class Value>
 std::vector<Index> chunks_of(const BlockCsrOf<Value>& matrix) {
-  // 0.6 MB of a matrix in double: few enough chunks to cost nothing, many enough for any number of threads
+  // 0.6 MB in double: chunks so large cost next to nothing, and are enough for any number of threads
   constexpr Offset kChunkBlocks = 8192;
   return balanced_ranges(matrix.offsets, static_cast<Index>(1 + matrix.block_count() / kChunkBlocks));
 }
@@ -85,7 +85,7 @@ std::vector<Index> chunks_of(const HalfBlockCsrOf<Value>& matrix) {
   return matrix.slabs;
 }
 
-/// Computes q = A p in the rows of a chunk and returns their part of pᵀA p.
+/// Computes q = A p in the rows of a chunk; returns these rows' part of pᵀA p.
 template <class Value>
 double multiply_chunk(const BlockCsrOf<Value>& matrix, const RowSweeps& rows, Index chunk,
                       std::span<const double> p, std::span<double> q) {
@@ -98,7 +98,7 @@ double multiply_chunk(const HalfBlockCsrOf<Value>& matrix, const RowSweeps& /*ro
   return multiply_slab_dot(matrix, p, q, chunk);
 }
 
-/// rᵀr and rᵀz of a residual r.
+/// rᵀr and rᵀz of the residual r and z = M⁻¹ r.
 struct Norms {
   double rr = 0.0, rz = 0.0;
   Norms& operator+=(const Norms& other) {
@@ -173,7 +173,7 @@ class ConjugateGradients {
   }
 
  private:
-  // rows whose r, z, q fit into the nearest cache together with the preconditioner's data
+  // number of rows whose r, z, q and preconditioner data fit into the L1 cache together
   static constexpr Index kTile = 128;
 
   /// Computes r = b − A x.
@@ -227,8 +227,8 @@ class ConjugateGradients {
     return {status, iterations_, residual(), converged ? Index{-1} : largest_vertex(v_.r)};
   }
 
-  /// Reports the vertex where numbers stopped being finite. Looks first in the arguments, then in the vectors
-  /// computed from them, in the order in which a bad row of the matrix reaches them.
+  /// Reports the first vertex with a number that is not finite: in b and x, then in p, q, r and z, the order
+  /// in which a bad row of the matrix spoils them.
   [[nodiscard]] SolveReport not_finite() const {
     Index vertex = first_not_finite(b_);
     if (vertex < 0) vertex = first_not_finite(x_);
@@ -253,7 +253,7 @@ class ConjugateGradients {
   int iterations_ = 0;
 };
 
-/// Computes r = b − A x and returns its norm.
+/// Computes r = b − A x; returns ‖r‖.
 double compute_residual(const BlockCsr& matrix, std::span<const double> b, std::span<const double> x,
                         std::span<double> r) {
   multiply(matrix, x, r);

@@ -27,7 +27,7 @@ HWY_INLINE Real* at(Real* x, Index place) {
   return x + Offset{kPaddedStride} * place;
 }
 
-/// Byte indices of a shuffle that repeats each factor of a register over the lanes of one vertex.
+/// Byte indices of the shuffle that fills all lanes of vertex i with factor i.
 template <class Real>
 struct Spread {
   alignas(64) std::uint8_t places[64] = {};
@@ -97,7 +97,7 @@ struct Vertices {
     for (int i = 0; i < One::kParts; ++i) result.part[i] = hn::Zero(Tag());
     return result;
   }
-  /// Returns a register that holds the same vertex kCount times.
+  /// Returns kCount copies of a vertex.
   static HWY_INLINE Vertices all(const One& vertex) {
     Vertices result;
     MESHORDER_UNROLL

@@ -14,7 +14,7 @@
 namespace meshorder {
 namespace {
 
-/// Entries of a reach that are worth tasks on other threads.
+/// Least number of entries of a reach that is worth tasks on other threads.
 constexpr Offset kMinShared = 100'000;
 
 template <class Real>
@@ -26,7 +26,7 @@ Real* at(Real* x, Index place) {
 template <class Real>
 class Solve {
  public:
-  /// Takes all panels if `reach` is null.
+  /// Solves with all panels if `reach` is null.
   Solve(const PanelFactor<Real>& factor, const FactorReach* reach, const Real* b, Real* x, Real* work)
       : factor_(factor),
         reach_(reach),
@@ -58,8 +58,8 @@ class Solve {
     return {panels.data() + (begin - panels.begin()), 0, static_cast<Index>(end - begin)};
   }
 
-  /// Returns whether any panel of the task takes part. A path that enters a task passes through its last
-  /// panel.
+  /// Returns whether any panel of the task is in the reach. If not, none of the tasks below is: paths from
+  /// there pass through this task.
   [[nodiscard]] bool takes_part(Index task) const { return panels_of(factor_.tasks[task]).count > 0; }
 
   template <class Work>
@@ -89,7 +89,7 @@ class Solve {
     sweep_forwards(factor_.view(), panels_of(task), work_);
   }
 
-  /// Calls `copy` for all columns of a task and their vertices, whose numbers in `vector` are prefetched.
+  /// Calls `copy` for each column of a task and its vertex; prefetches the vertex's numbers in `vector`.
   template <class Vector, class Copy>
   void for_columns(const PanelTask& task, Vector vector, Copy copy) const {
     constexpr Index kAhead = 24;

@@ -16,19 +16,19 @@ namespace meshorder {
 struct FactorReach {
   std::vector<Index> vertices;  ///< as given
   std::vector<Index> panels;    ///< ascending
-  Offset entries = 0;           ///< of the factor in these panels
+  Offset entries = 0;           ///< number of entries in these panels
 };
 
 /// The Cholesky factor L D Lᵀ of a symmetric positive definite matrix, which solves A X = B for the
 /// coordinates of all vertices at once. The factor has a fill-reducing order of its own (nested dissection);
 /// vectors are in the order of the matrix. `Real` is the precision of the factor and of vectors, double or
 /// float; the factor is computed in double. Solves run on all threads, with the same bits for any number of
-/// threads. They use scratch memory of the factor, so two threads must not call them at a time.
+/// threads. `solve` and `reach_of` use scratch memory of the factor: only one thread may call them at a time.
 template <class Real>
 class CholeskyFactor {
  public:
-  /// Reads the upper half of the matrix. Throws InvalidArgument, naming a row, if it is not positive definite
-  /// or singular to rounding. For meshes O(n^3/2) operations in the plane and O(n²) in space.
+  /// Reads the upper half of the matrix. Throws as factor_ldl, for example InvalidArgument for a matrix that
+  /// is not positive definite. For meshes O(n^3/2) operations in the plane and O(n²) in space.
   explicit CholeskyFactor(const SparseMatrix& matrix) : CholeskyFactor(factor_ldl(matrix)) {}
 
   /// Computes x = A⁻¹ b. Both vectors have kPaddedStride numbers for each vertex (see padded_positions), the
@@ -41,13 +41,13 @@ class CholeskyFactor {
   /// a vertex that does not exist. O(panels reached, times the logarithm of their number).
   [[nodiscard]] FactorReach reach_of(std::span<const Index> vertices) const;
 
-  /// Computes the same solution at the vertices given to reach_of; b must be 0 at all other vertices. b and x
-  /// have their full size, but only the numbers of these vertices are read and written. b and x may be the
-  /// same array. O(reach.entries).
+  /// Computes x = A⁻¹ b at the vertices given to reach_of; b must be 0 at all other vertices. b and x have
+  /// their full size, but only the numbers of these vertices are read and written. b and x may be the same
+  /// array. O(reach.entries).
   void solve(const FactorReach& reach, std::span<const Real> b, std::span<Real> x) const;
 
   [[nodiscard]] Index size() const noexcept { return panels_.size(); }
-  /// Returns the number of entries of the factor that its pattern allows, diagonal included.
+  /// Returns the number of entries in the pattern of L, diagonal included.
   [[nodiscard]] Offset entries() const noexcept { return entries_; }
   /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const { return panels_.bytes(); }
@@ -59,7 +59,7 @@ class CholeskyFactor {
   PanelFactor<Real> panels_;
   Offset entries_;
   mutable AlignedVector<Real> work_;   ///< kPaddedStride numbers for each place
-  mutable std::vector<Index> marked_;  ///< for each panel, the last search that met it
+  mutable std::vector<Index> marked_;  ///< for each panel, the number of the last search that reached it
   mutable Index searches_ = 0;
 };
 

@@ -7,8 +7,8 @@
 
 namespace meshorder {
 
-/// A square sparse matrix of numbers in compressed rows; of a symmetric matrix both halves. The columns of a
-/// row are ascending and include the diagonal.
+/// A square sparse matrix in compressed rows, with both halves if it is symmetric. The columns of a row are
+/// ascending and include the diagonal.
 struct SparseMatrix {
   std::vector<Offset> offsets{0};  ///< n + 1
   std::vector<Index> columns;
@@ -20,7 +20,7 @@ struct SparseMatrix {
 /// P A Pᵀ = L D Lᵀ with L unit lower triangular, by columns.
 struct Ldl {
   std::vector<Index> new_to_old;   ///< row i of L is row new_to_old[i] of A
-  std::vector<Offset> offsets{0};  ///< of the columns of L below their diagonals, n + 1
+  std::vector<Offset> offsets{0};  ///< of the columns of L, without the diagonal, n + 1
   std::vector<Index> rows;         ///< ascending in a column
   std::vector<double> values;
   std::vector<double> pivots;  ///< D, positive
@@ -28,10 +28,11 @@ struct Ldl {
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
 };
 
-/// Factors a symmetric positive definite matrix, whose upper half it reads, in an order that keeps L sparse:
-/// nested dissection (George 1973), by METIS and CHOLMOD (Chen, Davis, Hager, Rajamanickam 2008). The factor
-/// is the same on every run. Throws InvalidArgument, naming the row, if a pivot is negative, or 0 up to
-/// rounding errors. For meshes, L has O(n log n) entries in the plane and O(n^4/3) in space.
+/// Factors a symmetric positive definite matrix in an order that keeps L sparse: nested dissection (George
+/// 1973), by METIS and CHOLMOD (Chen, Davis, Hager, Rajamanickam 2008). Reads the upper half. The factor is
+/// the same on every run. Throws InvalidArgument if a pivot is negative, or 0 up to rounding errors, naming
+/// the row, and if 32 bits cannot count the entries. For meshes, L has O(n log n) entries in the plane and
+/// O(n^4/3) in space.
 Ldl factor_ldl(const SparseMatrix& matrix);
 
 }  // namespace meshorder

@@ -10,7 +10,7 @@
 namespace meshorder {
 namespace {
 
-/// Smallest cost of a task: this many entries, and at least this share of the whole factor.
+/// Smallest cost of a task (see PanelCosts): the larger of kMinCost and this share of the whole cost.
 constexpr double kMinCost = 40'000;
 constexpr double kMinPart = 1.0 / 32;
 
@@ -47,7 +47,7 @@ class Builder {
   const Ldl& ldl_;
   std::vector<Index> number_;    ///< for each column of L, its number in the factor
   std::vector<Index> columns_;   ///< for each of these numbers, the column of L
-  std::vector<Index> place_of_;  ///< for some columns: row in the panel, or slot in the task
+  std::vector<Index> place_of_;  ///< scratch, for some columns: row in the panel, or slot in the task
   PanelFactor<Real> factor_;
   Offset rows_ = 0, values_ = 0;  ///< in all panels so far
   Index filled_ = 0;              ///< number of panels filled so far
@@ -87,7 +87,7 @@ class Builder {
     }
   }
 
-  /// Fills the next panels, which are those of the supernode whose last column of L is `top`.
+  /// Fills the panels of the supernode whose last column of L is `top`, which must be the next to fill.
   void fill_panels(Index top) {
     std::vector<Index> below;
     for (Offset k = ldl_.offsets[top]; k < ldl_.offsets[top + 1]; ++k) below.push_back(number_[ldl_.rows[k]]);
@@ -121,15 +121,16 @@ class Builder {
     }
   }
 
-  /// Returns the index, among the panel's values, of column j in row r below the panel; see PanelView.
+  /// Returns the place, in the panel's values, of the entry in row r below the panel and column j; see
+  /// PanelView.
   static Offset place_below(const Panel& panel, Index r, Index j) {
     const Index group = r - r % Panel::kGroup;
     const Index in_group = std::min(Panel::kGroup, panel.row_count - group);
     return panel.width * (panel.width + 1) / 2 + Offset{panel.width} * group + in_group * j + (r - group);
   }
 
-  /// Assigns slots for rows of later tasks to the task whose panels were filled last. Sets the places that
-  /// the slots of its children have in the task.
+  /// Gives slots to the task whose panels were filled last, one for each row in a later task. Sets the place
+  /// in this task for each slot of its children.
   void give_slots(PanelTask& task) {
     const Index n = factor_.size();
     if (task.first_panel == task.end_panel) {
@@ -150,7 +151,7 @@ class Builder {
     std::transform(begin, end, begin, place);
     above_.insert(above_.end(), later.begin(), later.end());
     factor_.above_slots.resize(above_.size());
-    // each row that a child contributes to is a column of this task or one of its later rows
+    // each row that a child contributes to is a column of this task or has a slot in it
     for (const Index child : task.children) {
       for (Index slot = factor_.tasks[child].first_slot; slot < factor_.tasks[child].end_slot; ++slot) {
         factor_.above_slots[slot - n] = place(above_[slot - n]);

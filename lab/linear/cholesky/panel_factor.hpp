@@ -21,18 +21,18 @@ struct PanelTask {
   double cost;                  ///< of the task and all tasks below it, see PanelCosts
 };
 
-/// L D Lᵀ in panels (see PanelView) in the order in which a solve takes them. Vectors of a solve have a place
-/// for each column and for each slot of the tasks, kPaddedStride numbers each.
+/// L D Lᵀ in panels (see PanelView), in the order of a forward sweep. The vector of a solve has a place of
+/// kPaddedStride numbers for each column and for each slot of a task.
 template <class Real>
 struct PanelFactor {
-  std::vector<Index> vertex_of_column;  ///< the row of the matrix
+  std::vector<Index> vertex_of_column;  ///< the row of the matrix for each column
   std::vector<Index> column_of_vertex;
   std::vector<Index> panel_of_column;
   std::vector<Panel> panels;
-  std::vector<Index> rows;  ///< places: of a column, or of a task's slot
+  std::vector<Index> rows;  ///< of all panels: the place of a column or slot
   AlignedVector<Real> values;
   std::vector<PanelTask> tasks;    ///< children before their parents; the last is the root
-  std::vector<Index> above_slots;  ///< for each slot, from the first: its place in the task above
+  std::vector<Index> above_slots;  ///< for each slot of all tasks: the place in the task above
 
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(vertex_of_column.size()); }
   /// Returns the number of places of a vector.

@@ -13,9 +13,9 @@ struct Panel {
   Index column;     ///< the first
   Index width;      ///< columns
   Index row_count;  ///< below the columns
-  Index parent;     ///< the panel with the column of the first such row; −1 without rows
-  Offset rows;      ///< where the numbers of the rows begin
-  Offset values;    ///< where the entries begin
+  Index parent;     ///< the panel that has the first row below as a column; −1 without rows
+  Offset rows;      ///< where the panel's rows begin in PanelView::rows
+  Offset values;    ///< where its values begin in PanelView::values
 };
 
 /// Panels of a factor L D Lᵀ. The values of a panel are, in this order:

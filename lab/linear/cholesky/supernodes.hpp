@@ -10,7 +10,7 @@ namespace meshorder {
 /// Costs of a triangular solve in units of one entry of L. The entries are stored in panels: neighbouring
 /// columns with the union of their rows.
 struct PanelCosts {
-  Index widest = 8;     ///< columns of a panel at most
+  Index widest = 8;     ///< largest number of columns of a panel
   double panel = 30.0;  ///< to start a panel
   double row = 2.0;     ///< to read a row's index and to load and store the row
 };
@@ -20,7 +20,7 @@ struct PanelCosts {
 struct Supernodes {
   std::vector<Index> of_column;  ///< the supernode of each column of L
   std::vector<Index> parent;     ///< greater than the supernode, or −1
-  std::vector<Index> top;        ///< its last column of L, whose pattern is that of the rows below
+  std::vector<Index> top;        ///< its last column of L, which has entries in all rows below the supernode
   std::vector<double> cost;      ///< of its panels, by PanelCosts
 
   [[nodiscard]] Index count() const noexcept { return static_cast<Index>(parent.size()); }
@@ -30,8 +30,8 @@ struct Supernodes {
 /// column.
 constexpr Index panel_count(Index columns, Index widest) { return (columns + widest - 1) / widest; }
 
-/// Joins each column with its children in the elimination tree, one by one, if that makes the solve cheaper.
-/// O(columns log columns).
+/// Returns the supernodes: joins a column and each of its children in the elimination tree if that makes the
+/// solve cheaper. O(columns log columns).
 Supernodes find_supernodes(const Ldl& ldl, const PanelCosts& costs = {});
 
 /// A tree of tasks over a forest of supernodes. A task can start when its children are done; its children are
@@ -46,8 +46,8 @@ struct SolveTasks {
   [[nodiscard]] Index count() const noexcept { return static_cast<Index>(parent.size()); }
 };
 
-/// Cuts the forest wherever two or more branches are worth a task, that is, cost at least `min_cost` each;
-/// smaller branches are bundled. The tasks do not depend on the number of threads. O(supernodes).
+/// Cuts the forest wherever two or more branches each cost at least `min_cost`; smaller branches are bundled.
+/// The tasks do not depend on the number of threads. O(supernodes).
 SolveTasks make_solve_tasks(const Supernodes& supernodes, double min_cost);
 
 }  // namespace meshorder

@@ -16,8 +16,8 @@ using Block = Eigen::Matrix<double, R, C, Eigen::RowMajor>;
 template <int R, int C>
 using FloatBlock = Eigen::Matrix<float, R, C, Eigen::RowMajor>;
 
-/// Calls `work(begin, end)` for shares of the rows. The shares are so few that each may allocate as much
-/// memory as the matrix has.
+/// Calls `work(begin, end)` for shares of the rows. The shares are so few that each may allocate a number for
+/// every row of the matrix.
 template <class Work>
 void for_each_share(Index rows, Work work) {
   constexpr Index kShares = 16;
@@ -50,7 +50,7 @@ class ColumnSet {
   std::vector<Index> columns_;
 };
 
-/// Collects the columns of rows, found share by share, and joins them into one pattern.
+/// The columns of each row, found share by share, to be joined into one pattern.
 class PatternParts {
  public:
   explicit PatternParts(Index rows) : rows_(rows) {}

@@ -25,16 +25,15 @@ template <int R>
 CoarseMatrix galerkin_pattern(const BlockView<R>& fine, const Prolongation<R>& p,
                               const ColumnBlocks& transposed);
 
-/// Computes Pᵀ A P into the pattern of `coarse`, for symmetric A, in double. Unknowns that P leaves out have
-/// columns of zeros. Their diagonal entries become the largest diagonal entry of their block, or 1, so that
-/// the product is definite if A is. O(multiplications), on all threads, with the same bits for any number of
-/// threads.
+/// Computes Pᵀ A P into the pattern of `coarse`, for symmetric A, in double. If an unknown has a column of
+/// zeros in P, its diagonal entry becomes the largest diagonal entry of its block, or 1, so that the product
+/// is definite if A is. O(multiplications), on all threads, with the same bits for any number of threads.
 template <int R>
 void galerkin_product(const BlockView<R>& fine, const Prolongation<R>& p, const ColumnBlocks& transposed,
                       CoarseMatrix& coarse);
 
-/// Compute (I − ω D⁻¹ A) P₀ with D the blocks of A's diagonal (Vaněk, Mandel, Brezina 1996): first its
-/// pattern, then its values. `inverse_diagonal` holds the blocks of D⁻¹. O(multiplications).
+/// Compute the pattern, and the values, of (I − ω D⁻¹ A) P₀, where D is the block diagonal of A (Vaněk,
+/// Mandel, Brezina 1996). `inverse_diagonal` holds the blocks of D⁻¹. O(multiplications).
 Prolongation<kRigidModes> smoothed_pattern(const BlockView<kRigidModes>& matrix,
                                            const Prolongation<kRigidModes>& tentative);
 void smooth_prolongation(const BlockView<kRigidModes>& matrix, std::span<const float> inverse_diagonal,

@@ -22,7 +22,7 @@ struct BlockRows {
   Index columns_count = 0;
   std::vector<Offset> offsets{0};  ///< rows + 1
   std::vector<Index> columns;      ///< of a row, ascending
-  std::vector<Number> values;      ///< and `kRoom` more
+  std::vector<Number> values;      ///< in a Prolongation, `kRoom` more
 
   [[nodiscard]] Index rows() const noexcept { return static_cast<Index>(offsets.size() - 1); }
   [[nodiscard]] const Number* block(Offset k) const { return values.data() + kEntries * k; }

@@ -124,8 +124,8 @@ struct Node {
   }
 };
 
-/// Sums of products with blocks of R×C numbers, column by column. Each column has a sum of its own, since
-/// additions to one sum depend on each other.
+/// Sums of products with blocks of R×C numbers, column by column. Each column has a sum of its own, so that
+/// additions need not wait for each other.
 template <int R, int C>
 struct ProductSum {
   Node<R> of_column[C];
@@ -136,7 +136,7 @@ struct ProductSum {
     for (int c = 0; c < C; ++c) result.of_column[c] = Node<R>::zero();
     return result;
   }
-  /// Adds B x, with x in memory.
+  /// Adds block · x.
   HWY_INLINE void add(const float* block, const float* x) {
     MESHORDER_UNROLL
     for (int c = 0; c < C; ++c) {
@@ -156,7 +156,7 @@ struct ProductSum {
   }
 };
 
-/// Adds Bᵀ x to y for a block B of R×C numbers, column by column. y is in memory; zeros follow x's floats.
+/// Adds blockᵀ · x to y. The block has R×C numbers, column by column. Lanes of x after R floats must be 0.
 template <int R, int C>
 HWY_INLINE void add_transposed_product(const float* block, const Node<R>& x, float* y) {
   constexpr int kQuads = Node<C>::kQuads;

@@ -34,8 +34,8 @@ namespace {
 
 constexpr int kBytesAhead = 2048;
 
-/// Adds the contributions of row `i` to the rows before it. Simultaneous contributions of two chunks to one
-/// chunk go to separate memory.
+/// Adds the contributions of row `i` to earlier rows. Contributions from the chunks above and below go to
+/// separate memory, since they can come at the same time.
 template <int R>
 HWY_INLINE void give(const SweptRows& rows, Index i, const Node<R>& x) {
   for (Offset k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {
@@ -45,7 +45,7 @@ HWY_INLINE void give(const SweptRows& rows, Index i, const Node<R>& x) {
   }
 }
 
-/// Sets x = D⁻¹ sum in row i and returns it.
+/// Sets x = D⁻¹ · sum in row i; returns row i of x.
 template <int R>
 HWY_INLINE Node<R> solve_diagonal(const SweptRows& rows, Index i, const Node<R>& sum) {
   float entries[Node<R>::kStride];
@@ -57,8 +57,8 @@ HWY_INLINE Node<R> solve_diagonal(const SweptRows& rows, Index i, const Node<R>&
   return x;
 }
 
-/// Returns L x in row i. Prefetches blocks `Ahead` bytes from those of the row; hardware does not prefetch
-/// descending rows.
+/// Returns row i of L x. Prefetches blocks at a distance of `Ahead` bytes, which is negative in descending
+/// sweeps; hardware does not prefetch those.
 template <int R, int Ahead>
 HWY_INLINE Node<R> left_product(const SweptRows& rows, Index i) {
   auto product = ProductSum<R, R>::zero();
@@ -141,7 +141,7 @@ MESHORDER_SIMD_VERSIONS(backwards_6);
 MESHORDER_SIMD_VERSIONS(residual_3);
 MESHORDER_SIMD_VERSIONS(residual_6);
 
-/// Returns whether all neighbours of every row are in its own or an adjacent chunk.
+/// Returns whether all neighbours of every row are in the row's own chunk or an adjacent one.
 bool touch_only_the_next(const Laplacian& graph, const RowChunks& chunks) {
   bool result = true;
   for (Index i = 0; i < graph.size(); ++i) {
@@ -152,7 +152,7 @@ bool touch_only_the_next(const Laplacian& graph, const RowChunks& chunks) {
   return result;
 }
 
-/// Returns chunks of rows that touch only adjacent chunks, as small as `min_rows` allows, or one chunk.
+/// Returns the smallest chunks of at least `min_rows` rows that touch only adjacent chunks, or one chunk.
 RowChunks sweep_chunks(const Laplacian& graph, Index min_rows) {
   for (Index rows = min_rows; rows < graph.size(); rows *= 2) {
     RowChunks chunks(graph, rows);
@@ -161,7 +161,8 @@ RowChunks sweep_chunks(const Laplacian& graph, Index min_rows) {
   return RowChunks::whole(graph.size());
 }
 
-/// Returns the inverse of a symmetric block, its eigenvalues made positive; 0 if the block is not finite.
+/// Returns the inverse of a symmetric block after making its eigenvalues positive; the identity if the block
+/// is 0; 0 if the block is not finite.
 template <int R>
 Eigen::Matrix<double, R, R> positive_inverse(const Eigen::Matrix<double, R, R>& block) {
   using Block = Eigen::Matrix<double, R, R>;
@@ -206,7 +207,7 @@ BlockSweeps<R>::BlockSweeps(const BlockView<R>& pattern, Index min_rows) {
   };
 
   offsets_.reserve(Offset{n} + 1);
-  std::vector<std::pair<Index, Index>> left;  // columns and where their blocks are
+  std::vector<std::pair<Index, Index>> left;  // a column's number in the view, and in the matrix
   for (Index i = 0; i < n; ++i) {
     left.clear();
     const Index row = pattern.order[i];

@@ -18,12 +18,12 @@ inline constexpr Index kNodeStride = R == 3 ? 4 : 8;
 struct SweptRows;
 
 /// Gauss–Seidel by blocks on a symmetric matrix A = L + D + Lᵀ of R×R blocks. Only L, in float, and the
-/// inverses of D are kept. L serves both triangles, since the blocks that couple a row to earlier rows also
-/// give those rows their part of A x.
+/// inverses of D are kept. L serves both triangles: with the blocks of a row of L, a sweep also adds the
+/// row's part of Lᵀ x to earlier rows.
 ///
 /// Rows are processed in chunks. Chunks of one colour are processed at the same time (see RowChunks); every
-/// chunk touches only adjacent chunks. L is the part to the left of D in that order. Results have the same
-/// bits for any number of threads.
+/// chunk touches only adjacent chunks. L couples rows to rows that are processed earlier. Results have the
+/// same bits for any number of threads.
 template <int R>
 class BlockSweeps {
  public:
@@ -38,7 +38,7 @@ class BlockSweeps {
   /// definite.
   void update(const BlockView<R>& matrix);
 
-  /// Scratch memory for contributions of rows to earlier rows: kNodeStride floats a node each.
+  /// Scratch memory for contributions of rows to earlier rows: two vectors of kNodeStride floats a node.
   struct Given {
     AlignedVector<float> from_below, from_above;
   };

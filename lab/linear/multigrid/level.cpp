@@ -38,7 +38,7 @@ Laplacian graph_of_norms(const BlockView<R>& matrix) {
 /// Returns the aggregates of the nodes that have neighbours. They are larger if the prolongation is
 /// smoothed.
 Aggregates aggregates_of(const Laplacian& graph, Coarsening coarsening) {
-  // relative to the strongest neighbour
+  // smallest norm of a strong neighbour's block, relative to the largest of the row
   const double strength = coarsening == Coarsening::plain ? 0.25 : 0.04;
   const Aggregation all = aggregate(graph, RowChunks::whole(graph.size()), strength);
   const auto has_neighbours = [&](Index i) { return graph.offsets[i] < graph.offsets[i + 1]; };
@@ -62,7 +62,7 @@ Aggregates aggregates_of(const Laplacian& graph, Coarsening coarsening) {
   return result;
 }
 
-/// Returns 4/3 over an estimate of the spectral radius of D⁻¹ A, by the power method.
+/// Returns ω = 4/3 divided by the spectral radius of D⁻¹ A, which the power method estimates.
 double smoothing_of(const BlockView<kRigidModes>& matrix, const AlignedVector<float>& inverse_diagonal) {
   constexpr int kSteps = 12;
   constexpr double kMargin = 1.1;  // since the power method underestimates

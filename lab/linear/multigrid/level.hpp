@@ -13,7 +13,7 @@ template <int R>
 struct MultigridLevel {
   BlockSweeps<R> sweeps;
   Prolongation<R> prolongation;  ///< from the next level; without columns on the coarsest
-  Prolongation<R> tentative;     ///< before smoothing; empty where the prolongation is plain
+  Prolongation<R> tentative;     ///< the prolongation before smoothing; empty if it stays plain
   double smoothing = 0;          ///< ω of the smoothed prolongation
   ColumnBlocks transposed;
   CoarseMatrix coarse;  ///< the next level's operator; has values only during an update
@@ -25,13 +25,13 @@ struct MultigridLevel {
 /// Whether to smooth the prolongation of a level.
 enum class Coarsening : std::uint8_t { plain, smoothed };
 
-/// Makes the level of a matrix and the transfer to the next level, with aggregates by the norms of the
-/// blocks. `modes` holds R×6 numbers a node, in the order of the view; on return it holds the modes of the
-/// coarse nodes. The level is the coarsest if coarsening would keep more than 80 % of the nodes.
+/// Makes the level of a matrix and the transfer to the next level; aggregates nodes by the norms of their
+/// blocks. `modes` holds R×6 numbers a node, in the order of the view, and becomes the modes of the coarse
+/// nodes. If coarsening would keep more than 80 % of the nodes, the level is the coarsest.
 template <int R>
 MultigridLevel<R> make_level(const BlockView<R>& matrix, Coarsening coarsening, std::vector<double>& modes);
 
-/// Takes the values of a matrix of the same pattern, for the sweeps and for `coarse`.
+/// Computes the values of the sweeps, prolongation and `coarse` from a matrix of the same pattern.
 template <int R>
 void update_level(const BlockView<R>& matrix, MultigridLevel<R>& level);
 

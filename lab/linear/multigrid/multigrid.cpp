@@ -33,7 +33,7 @@ CsrGraph graph_of(const BlockCsr& pattern) {
   return graph;
 }
 
-/// Returns the inverse of a symmetric matrix; eigenvalues that are not positive are made positive.
+/// Returns the inverse of a symmetric matrix after making its eigenvalues positive; 0 if it is not finite.
 Eigen::MatrixXf dense_inverse(const CoarseMatrix& matrix) {
   constexpr double kMin = 1e-12;  // smallest eigenvalue, as a share of the largest
   const Eigen::Index n = Eigen::Index{kRigidModes} * matrix.rows();
@@ -188,7 +188,7 @@ class Multigrid final : public Preconditioner {
     if (!now.is_coarsest()) {
       restrict_residual(now, here.residual, right_side(level + 1));
       cycle(level + 1);
-      // one cycle is enough on a level that the exact level follows
+      // one cycle is enough on the last swept level and on the exact level
       if (level + 2 < coarse_.size()) cycle_again(level + 1);
       add_prolonged(now, correction(level + 1), here.x);
     }

@@ -12,8 +12,8 @@ namespace meshorder {
 ///
 /// Vertices are gathered in aggregates by the strength of their blocks; each aggregate is a node of the next
 /// level with six unknowns, its rigid motions, and so on to a level that is solved exactly or hardly
-/// coarsens. The prolongation from the first coarse level is plain, so that the finest operator keeps its
-/// sparsity. The prolongations from coarser levels are smoothed, so that iterations hardly grow with the
+/// coarsens. The prolongation from the first coarse level is plain, so that the first coarse operator stays
+/// sparse. The prolongations from coarser levels are smoothed, so that iterations hardly grow with the
 /// mesh. Coarse operators are Galerkin products. A cycle sweeps Gauss–Seidel over the blocks forwards,
 /// corrects from the next level (once from the first coarse level and from the last levels, twice from the
 /// others: a W-cycle) and sweeps backwards. Matrices are kept as halves in float; coarse operators are
@@ -22,9 +22,10 @@ namespace meshorder {
 ///
 /// The first `update` makes the aggregates from the matrix's values; later updates only recompute values, and
 /// take a third to a half of the time. A matrix that changes slowly does not need an update each time: with
-/// old values the cycle stays symmetric and positive definite, and only takes more iterations. In time
-/// stepping, update when iterations have grown by a third since the last update. Vertices without neighbours,
-/// such as fixed vertices, stay on the finest level. A vertex may lose its neighbours after the first update.
+/// old values the cycle stays symmetric and positive definite, and a solve only takes more iterations. In
+/// time stepping, update when iterations have grown by a third since the last update. Vertices without
+/// neighbours, such as fixed vertices, stay on the finest level. A vertex may lose its neighbours after the
+/// first update.
 ///
 /// The memory is 0.6 to 0.9 times that of the matrix. Set-up, update and cycle each take O(blocks) time, on
 /// all threads except for the aggregates. `apply` uses scratch memory of the object and must not be called by

@@ -17,7 +17,7 @@ using Square = Eigen::Matrix<double, kRigidModes, kRigidModes, Eigen::RowMajor>;
 /// columns to the old ones. Columns that depend on earlier columns become 0.
 Square orthonormalise(Modes& columns) {
   constexpr int kTranslations = 3;
-  // relative to the widest rotation: an aggregate thinner than this is a line
+  // least norm of a mode, relative to the largest rotation; below it the mode is 0 (rotation about a line)
   constexpr double kMin = 1e-4;
   Square upper = Square::Zero();
   const auto project_out = [&](int from, int j) {

@@ -18,15 +18,15 @@ struct Aggregates {
   [[nodiscard]] Index count() const noexcept { return index_size(starts) - 1; }
 };
 
-/// Returns the displacements of each point in the six infinitesimal rigid motions about the mean of all, 3×6
-/// numbers a point, row by row: translations along x, y, z, rotations about x, y, z. O(points).
+/// Returns the displacements of each point in the six infinitesimal rigid motions about the mean point: 3×6
+/// numbers a point, row by row. Columns are translations along x, y, z, then rotations about them. O(points).
 std::vector<double> rigid_modes(std::span<const Point> points);
 
 /// Result of aggregation: the prolongation and the modes of the coarse nodes.
 template <int R>
 struct RigidProlongation {
   Prolongation<R> prolongation;
-  /// 6×6 numbers a coarse node: its unknowns in each mode, so that prolongation reproduces the modes.
+  /// 6×6 numbers a coarse node: the unknowns from which prolongation reproduces each mode.
   std::vector<double> coarse_modes;
 };
 

@@ -26,7 +26,7 @@ void subtract_product(double* a, const double* b, const Value* block) {
   }
 }
 
-/// Returns whether a pivot exceeds the rounding errors of the original diagonal block.
+/// Returns whether each diagonal entry of a pivot exceeds a thousandth of the original one.
 bool is_large_enough(const double* pivot, const double* diagonal) {
   constexpr double kMin = 1e-3;
   for (int c = 0; c < 3; ++c) {
@@ -35,7 +35,7 @@ bool is_large_enough(const double* pivot, const double* diagonal) {
   return true;
 }
 
-/// Returns for each vertex whether it connects its chunk to an earlier chunk.
+/// Returns for each vertex whether it has a neighbour in an earlier chunk.
 std::vector<bool> joining_vertices(const BlockCsr& pattern, const std::vector<Index>& bounds) {
   std::vector<bool> joins(static_cast<std::size_t>(pattern.size()), false);
   for (Index chunk = 0; chunk + 1 < index_size(bounds); ++chunk) {
@@ -74,7 +74,7 @@ IncompleteCholesky::IncompleteCholesky(const BlockCsr& pattern)
   for (Index i = 0; i < n; ++i) rows_[vertices_[i]] = i;
   for (const Index v : vertices_) {
     diagonals_.push_back(diagonal_block(pattern, v));
-    // inner vertices before the others, each in ascending order
+    // columns: first the inner vertices, then those that join chunks, each ascending
     for (const bool joining : {false, true}) {
       if (joining && !joins[v]) continue;
       for (Offset k = pattern.offsets[v]; k < pattern.offsets[v + 1]; ++k) {
@@ -107,7 +107,7 @@ void IncompleteCholesky::take(const BlockCsr& matrix) {
 }
 
 bool IncompleteCholesky::factor(const BlockCsr& matrix, double shift) {
-  // all threads stop when one has failed
+  // set to false by a thread that finds a bad pivot; then all threads stop
   std::atomic<bool> definite = true;
   for_each_inner_range([&](Index begin, Index end) { factor_rows(matrix, shift, begin, end, definite); });
   factor_rows(matrix, shift, bounds_.back(), size(), definite);
@@ -117,9 +117,9 @@ bool IncompleteCholesky::factor(const BlockCsr& matrix, double shift) {
 void IncompleteCholesky::factor_rows(const BlockCsr& matrix, double shift, Index begin, Index end,
                                      std::atomic<bool>& definite) {
   if (begin == end) return;
-  // for each vertex, the position of the row's block in that vertex's column; −1 if there is no such block
+  // for each vertex u, the position in row i of the block in column u; −1 if there is no such block
   std::vector<Index> places(vertices_.size(), -1);
-  // L D of the row
+  // row i of L D
   std::vector<double> row;
   for (Index i = begin; i < end && definite.load(std::memory_order_relaxed); ++i) {
     const Offset first = offsets_[i];

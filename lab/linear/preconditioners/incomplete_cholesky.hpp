@@ -15,12 +15,12 @@ namespace meshorder {
 /// docs/evidence/benchmarks.md.
 ///
 /// Vertices are eliminated in their order, except that vertices coupled to an earlier chunk of rows come
-/// last. The inner vertices of the chunks are then factored and solved on threads. The chunks depend on the
-/// pattern alone. In a local order few vertices join chunks; in a scrambled order most do, and threads gain
-/// nothing.
+/// last. The inner vertices of different chunks are factored and solved on different threads. The chunks
+/// depend on the pattern alone. In an order with short spans few vertices join chunks; in a scrambled order
+/// most do, and threads gain nothing.
 class IncompleteCholesky final : public Preconditioner {
  public:
-  /// Takes and copies the pattern of the matrices. Throws InvalidArgument when a row lacks its diagonal.
+  /// Copies the pattern of the matrices. Throws InvalidArgument when a row lacks its diagonal.
   explicit IncompleteCholesky(const BlockCsr& pattern);
 
   [[nodiscard]] std::size_t bytes() const override;
@@ -35,17 +35,17 @@ class IncompleteCholesky final : public Preconditioner {
   bool factor(const BlockCsr& matrix, double shift);
   void factor_rows(const BlockCsr& matrix, double shift, Index begin, Index end, std::atomic<bool>& definite);
   void keep_diagonal(const BlockCsr& matrix);
-  /// Calls `work(begin, end)` for the rows of each chunk, on all threads.
+  /// Calls `work(begin, end)` for the inner rows of each chunk, on all threads.
   template <class Work>
   void for_each_inner_range(Work work) const;
 
-  std::vector<Index> bounds_;       ///< rows of the chunks' inner vertices; the rows of the others follow
-  std::vector<Index> vertices_;     ///< of each row
-  std::vector<Index> rows_;         ///< of each vertex
+  std::vector<Index> bounds_;       ///< of each chunk's inner rows; the other rows follow
+  std::vector<Index> vertices_;     ///< the vertex of each row
+  std::vector<Index> rows_;         ///< the row of each vertex
   std::vector<Offset> offsets_;     ///< of each row's blocks left of the diagonal
   std::vector<Index> columns_;      ///< their vertices, in the order of elimination
-  std::vector<Offset> sources_;     ///< the blocks of the matrix that they come from
-  std::vector<Offset> diagonals_;   ///< the matrix's blocks on the diagonal, for each row
+  std::vector<Offset> sources_;     ///< for each of these blocks, its index in the matrix
+  std::vector<Offset> diagonals_;   ///< for each row, the index of its diagonal block in the matrix
   AlignedVector<float> values_;     ///< L's blocks, and one more number, since vector loads read past the end
   AlignedVector<double> inverses_;  ///< D⁻¹, 6 for each vertex: 00 01 02 11 12 22
   double shift_ = 0.0;

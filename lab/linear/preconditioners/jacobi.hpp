@@ -19,8 +19,8 @@ class LocalPreconditioner : public Preconditioner {
   void multiply(std::span<const double> r, std::span<double> z) const final;
 };
 
-/// z_i = r_i / |a_ii|. A diagonal entry that is 0 or not finite counts as 1, so that the preconditioner stays
-/// positive definite and the solver detects the bad matrix.
+/// Divides by the diagonal: z_i = r_i / |a_ii|. A diagonal entry that is 0 or not finite counts as 1, so that
+/// the preconditioner stays positive definite and the solver detects the bad matrix.
 class Jacobi final : public LocalPreconditioner {
  public:
   using LocalPreconditioner::LocalPreconditioner;
@@ -33,8 +33,8 @@ class Jacobi final : public LocalPreconditioner {
   AlignedVector<double> inverses_;  ///< 3 for each vertex
 };
 
-/// z_v = A_vv⁻¹ r_v with the 3×3 blocks A_vv of the diagonal, of which the upper triangles are read. A block
-/// that is not positive definite is replaced by its diagonal, as in `Jacobi`.
+/// Inverts the 3×3 blocks A_vv of the diagonal: z_v = A_vv⁻¹ r_v. Reads their upper triangles. A block that
+/// is not positive definite is replaced by its diagonal, as in `Jacobi`.
 class BlockJacobi final : public LocalPreconditioner {
  public:
   using LocalPreconditioner::LocalPreconditioner;

@@ -21,7 +21,7 @@ class Preconditioner : public Polymorphic {
   explicit Preconditioner(Index size) : size_(size) {}
 
   /// Takes the values of a matrix with the preconditioner's pattern. Call it before `apply`, and again after
-  /// the matrix has changed. Throws InvalidArgument when the matrix has another size.
+  /// the matrix has changed. Throws InvalidArgument for another size (see also make_preconditioner).
   void update(const BlockCsr& matrix);
 
   /// Computes z ≈ A⁻¹ r, 3 doubles for each vertex. Throws InvalidArgument if a size differs.
@@ -34,7 +34,7 @@ class Preconditioner : public Polymorphic {
   [[nodiscard]] Index size() const noexcept { return size_; }
 
  private:
-  /// `update` and `apply` for arguments of the right size.
+  /// Do the work of `update` and `apply`; the arguments have the right size.
   virtual void take(const BlockCsr& matrix) = 0;
   virtual void multiply(std::span<const double> r, std::span<double> z) const = 0;
 
@@ -44,7 +44,7 @@ class Preconditioner : public Polymorphic {
 enum class PreconditionerKind : std::uint8_t {
   jacobi,               ///< the diagonal
   block_jacobi,         ///< the 3×3 blocks of the diagonal
-  incomplete_cholesky,  ///< L Lᵀ in the pattern of A, by blocks
+  incomplete_cholesky,  ///< L D Lᵀ in the pattern of A, by blocks
   multigrid,            ///< a cycle over aggregates with rigid-body modes (see make_multigrid)
 };
 
@@ -59,7 +59,7 @@ struct EnumNames<PreconditionerKind> {
 
 /// Returns a preconditioner for matrices of this pattern. `points` are the positions of the vertices at rest,
 /// from which multigrid computes its rigid-body modes. Throws InvalidArgument if the numbers of points and
-/// rows differ. If a row lacks its diagonal, this function or `update` throws InvalidArgument.
+/// rows differ. If a row lacks its diagonal, this function or `update` throws, except for multigrid.
 std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const BlockCsr& pattern,
                                                     std::span<const Point> points);
 

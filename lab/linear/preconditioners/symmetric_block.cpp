@@ -15,7 +15,7 @@ double inverse_or_one(double entry) {
 
 std::optional<SymmetricBlock> inverse_of_definite(const SymmetricBlock& block) {
   if (!(block[0] > 0.0 && block[3] > 0.0 && block[5] > 0.0)) return std::nullopt;
-  // scales the block to a diagonal of ones, so that the size of a number shows whether it is rounding
+  // scales the diagonal to ones, so that a number below a fixed bound can only be a rounding error
   const std::array<double, 3> scale{1.0 / std::sqrt(block[0]), 1.0 / std::sqrt(block[3]),
                                     1.0 / std::sqrt(block[5])};
   const double b01 = block[1] * scale[0] * scale[1];

@@ -23,8 +23,8 @@ std::optional<SymmetricBlock> inverse_of_definite(const SymmetricBlock& block);
 /// Returns 1 / |entry|, or 1 if that or the entry is not finite.
 double inverse_or_one(double entry);
 
-/// Returns the inverse of a block, or of its diagonal's absolute value if the block is not positive definite.
-/// The result is always finite and positive definite.
+/// Returns the inverse of a block; if the block is not positive definite, inverse_or_one of its diagonal. The
+/// result is always finite and positive definite.
 SymmetricBlock definite_inverse(const SymmetricBlock& block);
 
 /// Returns the index of a vertex's block on the diagonal. Throws InvalidArgument if the pattern lacks it.

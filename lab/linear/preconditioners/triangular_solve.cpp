@@ -14,7 +14,7 @@ namespace meshorder::HWY_NAMESPACE {
 namespace {
 
 #if HWY_MAX_BYTES >= 32
-/// Subtracts blockᵀ · p from z, by rows of the block.
+/// A vector p; subtracts blockᵀ · p from z, by rows of the block.
 struct TransposedProduct {
   using Four = hn::FixedTag<double, 4>;
   hn::Vec<Four> p0, p1, p2;
@@ -49,7 +49,7 @@ struct TransposedProduct {
 };
 #endif
 
-// number of blocks by which prefetching runs ahead, as in the product with a matrix
+// distance of prefetching, in blocks, as in the product with a matrix
 constexpr Offset kAhead = 128;
 
 void lower(const BlockFactor& factor, const double* r, double* z, Index begin, Index end) {

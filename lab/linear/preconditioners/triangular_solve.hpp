@@ -5,9 +5,9 @@
 
 namespace meshorder {
 
-/// L D Lᵀ in 3×3 blocks. L is unit lower triangular, with its rows in an order of its own: row i is that of
-/// the vertex `vertices[i]`. To the left of its diagonal, row i has the blocks `offsets[i] … offsets[i + 1] −
-/// 1`; `columns` lists the vertices of their columns.
+/// L D Lᵀ in 3×3 blocks. L is unit lower triangular. Row i of L belongs to the vertex `vertices[i]` and has
+/// the blocks `offsets[i] … offsets[i + 1] − 1` left of the diagonal; `columns` lists the vertices of their
+/// columns.
 struct BlockFactor {
   const Index* vertices;
   const Offset* offsets;
@@ -19,8 +19,8 @@ struct BlockFactor {
 /// Solves rows begin … end − 1 of L z = r for z at their vertices. O(blocks).
 void solve_lower(const BlockFactor& factor, const double* r, double* z, Index begin, Index end);
 
-/// Solves rows end − 1 … begin of Lᵀ z = y. On entry z is y without the contributions of later rows.
-/// O(blocks).
+/// Solves rows end − 1 … begin of Lᵀ z = y. On entry z must be y minus the contributions of later rows of L;
+/// the function subtracts those of its own rows. O(blocks).
 void solve_upper(const BlockFactor& factor, double* z, Index begin, Index end);
 
 /// Computes z = D⁻¹ z at the vertices of the rows begin … end − 1.
