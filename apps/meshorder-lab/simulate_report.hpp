@@ -17,7 +17,7 @@ void print_header(const Console& console, const Simulation& simulation, const st
 /// Prints times, iterations and the change of energy and momentum.
 void print_summary(Console& console, const Simulation& simulation, const MotionRecord& record);
 
-/// Returns the keys that docs/json.md lists, except the mesh's file, frames and checkpoints.
+/// Returns the object of docs/json.md without its keys about reading, frames and checkpoints.
 nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord& record);
 
 }  // namespace meshorder::command

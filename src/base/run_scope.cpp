@@ -51,7 +51,7 @@ void RunScope::tell() {
   const double seconds = std::chrono::duration<double>(now - start_).count();
   const OutsideOfCalls outside;
   if (!run_.progress({.stage = stage_, .fraction = fraction_, .seconds = seconds})) throw Stopped();
-  // not `now`, which is out of date after a slow function: every poll would then call the function again
+  // not `now`: after a slow callback it is out of date, and every poll would call back again
   told_ = std::chrono::steady_clock::now();
 }
 

@@ -173,8 +173,8 @@ OwnedMesh mesh_of(const Communicator& communicator, const mo_mpi_mesh* given) {
   return mesh;
 }
 
-/// Writes numbers to the caller's array, unless it is null. If `wanted`, the array's name, is given: throws
-/// on all ranks if a rank has numbers but a null array.
+/// Writes numbers to the caller's array, unless it is null. With `wanted`, the array's name, throws on all
+/// ranks if one has numbers but a null array.
 void write(const Communicator& communicator, const std::vector<GlobalIndex>& numbers, std::int64_t* to,
            const char* wanted = nullptr) {
   communicator.together([&] {

@@ -66,7 +66,7 @@ bool is_scattered(IncidenceRef incidence) {
 }
 
 // The next two functions return the rows of each column, ascending, one column after another.
-// `entries_of(part, begin, end)` returns a function that calls its argument for each position of a part.
+// `entries_of(part, begin, end)(call)` calls `call` with row and column of each entry of a part.
 
 /// @param offsets  where each column begins, and the end
 template <class EntriesOf>

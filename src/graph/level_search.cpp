@@ -61,9 +61,9 @@ void LevelSearch::arrange_found(std::span<Index> places, Index first, Index end,
 }
 
 /// While threads read the rows of a level, `place_of_` holds a negative mark for each vertex that they find;
-/// earlier rows give larger marks. If two threads mark a vertex at once, the later mark stays, and both
-/// threads list the vertex; the next loop restores the largest mark, and the one after it drops the other
-/// findings. An atomic exchange would make the processor wait for one vertex at a time.
+/// earlier rows give larger marks. If two threads mark a vertex at once, the mark stored last stays, and both
+/// threads list the vertex. The second loop restores the largest mark; the third drops the other findings. An
+/// atomic exchange would make the processor wait for one vertex at a time.
 Index LevelSearch::find_next_level_together(std::span<Index> places, Index begin, Index end,
                                             Arrange arrange) {
   constexpr Index kAtOnce = 256;  // vertices that a thread takes together

@@ -5,8 +5,8 @@
 
 namespace meshorder {
 
-/// A shared library that is loaded on first use, for objects with static storage duration. The libraries of
-/// file formats load 40 others; loading all at the start would take half of the time of a small task.
+/// A shared library, loaded on first use. Its objects need static storage duration. The libraries of file
+/// formats load 40 others; loading all at the start would take half of the time of a small task.
 class LoadedLibrary {
  public:
   /// @param name  as users know it: "HDF5"

@@ -35,7 +35,7 @@ struct OwnedBatches {
 /// are the offsets of the compressed rows. O(parts · log rows).
 std::vector<Index> balanced_ranges(std::span<const Offset> offsets, Index parts);
 
-/// Sets `owners` to the numbers of all ranges with a vertex, each once, ascending; `bounds` has the ranges.
+/// Sets `owners` to the numbers, ascending, of the ranges in `bounds` that hold any of `vertices`.
 /// O(vertices · log parts).
 void owners_of(std::span<const Index> vertices, std::span<const Index> bounds, std::vector<Index>& owners);
 

@@ -40,10 +40,10 @@ std::vector<MethodInfo> built_in_element_methods();
 /// Renumbers each chunk of 2,048 vertices of an order breadth first. The search starts from the vertices with
 /// neighbours in earlier chunks, those with the earliest neighbour first.
 ///
-/// A sweep over rows or edges then touches new vertices nearly in the order of their numbers. If vectors
-/// exceed the last cache, the sweep reads memory forward, as after breadth-first numbering of the whole
-/// graph, and processors prefetch the data. Vertices move only within their chunk, so each chunk remains the
-/// same compact region.
+/// A sweep over rows or edges then touches new vertices nearly in the order of their numbers. It reads memory
+/// forward, as after breadth-first numbering of the whole graph, so that processors prefetch vectors that
+/// exceed the last cache. Vertices move only within their chunk, so each chunk remains the same compact
+/// region.
 ///
 /// O(n + edges · log degree) on all threads; the result does not depend on their number.
 Permutation in_fronts(GraphRef graph, const Permutation& order);

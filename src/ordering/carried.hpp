@@ -11,8 +11,7 @@ namespace meshorder {
 
 /// How the vertices of an update differ from those of the previous update.
 struct VertexChanges {
-  std::vector<Index>
-      places;  ///< each vertex's place after the last update, −1 if it is new; empty: nothing changed
+  std::vector<Index> places;  ///< places after the previous update, −1 if new; empty: none has moved
   std::vector<Index> added;
   Index removed = 0;
 };

@@ -21,7 +21,7 @@ namespace {
 
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): a plug-in's function has no other context
 thread_local std::string source_of_methods;
-thread_local std::string fault_of_method;  // why the last method was not registered
+thread_local std::string fault_of_method;  // why a method was last refused
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 /// Registers a method of a plug-in for the rest of the program.

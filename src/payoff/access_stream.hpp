@@ -305,7 +305,7 @@ int halvings_for(Offset simplices);
 /// The reuse of each kernel, in the order of kKernels.
 using KernelReuse = std::array<RunReuse, kKernels.size()>;
 
-/// Returns the reuse of all kernels. The threads share the kernels among them.
+/// Returns the reuse of all kernels. Each thread takes one kernel at a time.
 KernelReuse reuse_of_kernels(const CsrGraph& graph, SimplicesRef simplices, int halvings = 0);
 
 /// Returns the reuse of the product with a matrix; the entries of other kernels are empty.

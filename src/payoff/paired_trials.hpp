@@ -72,7 +72,7 @@ class PairedTrials {
   [[nodiscard]] TrialVerdict verdict() const { return verdict_; }
 
   [[nodiscard]] TimeRatio speedup(std::size_t candidate) const;
-  /// Returns the number of pairs with the file's own order.
+  /// Returns how many pairs the candidate has with the file's own order.
   [[nodiscard]] std::size_t pairs(std::size_t candidate) const { return logs_[candidate].size(); }
 
  private:

@@ -157,6 +157,13 @@ TEST(Unv, ReadsNodesElementsGroupsAndResults) {
             (std::vector<double>{0.5, 0, 1, 0.1, 1.23456e-07, 0}));
 }
 
+TEST(Unv, WholeNumbersLeaveABlankInTenColumns) {
+  EXPECT_TRUE(unv::fits_columns(999'999'999));
+  EXPECT_FALSE(unv::fits_columns(1'000'000'000));
+  EXPECT_TRUE(unv::fits_columns(-99'999'999));
+  EXPECT_FALSE(unv::fits_columns(-100'000'000));
+}
+
 TEST(Unv, WritesWhatItRead) {
   // members of a group are written nodes first
   const std::string expected =

@@ -79,7 +79,7 @@ class HaloValues {
   /// Returns the value of the k-th number that this rank owns.
   [[nodiscard]] const T& own(Offset k) const { return own_[static_cast<std::size_t>(k)]; }
   [[nodiscard]] const std::vector<T>& own() const noexcept { return own_; }
-  /// Returns the value of a number that the rank owns or the halo has. O(1), or as `Halo::position`.
+  /// Returns the value of an own number in O(1), of a number in the halo as `Halo::position`.
   [[nodiscard]] const T& operator[](GlobalIndex number) const {
     const GlobalIndex k = number - first_;
     if (k >= 0 && k < std::ssize(own_)) return own(k);

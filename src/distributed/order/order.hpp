@@ -65,8 +65,8 @@ struct DistributedOrder {
 /// @param slice  its arrays are freed as soon as they are no longer needed
 /// @throws SharedError for a method that does not exist or has no meaning within parts, for a number of parts
 ///         that is negative, or above a million and above the number of vertices, for `Partitioner::order`
-///         with another method than `fiedler` or with a balance or place of interfaces that equal ranges
-///         cannot have, and if a rank fails
+///         unless the method is `fiedler`, the balance `vertices` and the interfaces are `mixed`; and if a
+///         rank fails
 /// @note The order depends only on the mesh, the options and the number of ranks; with `Partitioner::hilbert`
 ///       and a given number of parts, it does not depend on the number of ranks.
 [[nodiscard]] DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,

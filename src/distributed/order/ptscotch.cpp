@@ -5,7 +5,7 @@
 
 #include <ptscotch.h>
 
-#include <cstdio>  // which ptscotch.h takes for granted
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <type_traits>

@@ -177,9 +177,8 @@ std::size_t kind_of_ordering(std::string_view keyword);
 /// edge. In triangles, tetrahedra and prisms, the coordinates are barycentric, as in sections "…Ordering".
 std::vector<std::vector<int>> reference_nodes(Shape shape);
 
-/// Returns the kind of cells to which positions of a target refer: linear cells if the mesh has any, else
-/// cells of second order; the number of kinds if the mesh has neither. `counts`: number of cells of each
-/// kind.
+/// Returns the kind of cells of the shape `target` that sections count: linear cells if there are any, else
+/// cells of second order, else the number of kinds. `counts`: number of cells of each kind.
 std::size_t counted_kind(Shape target, std::span<const Index> counts);
 
 /// Adds the note "FILE `what`" for each file of solutions (.sol, .solb) beside the mesh.

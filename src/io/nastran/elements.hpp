@@ -18,7 +18,7 @@ enum class Extra : std::uint8_t {
   warping       ///< as `orientation`; fields 17 and 18 are points
 };
 
-/// A card of elements.
+/// A type of element card.
 struct ElementType {
   std::string_view name;
   Shape shape;

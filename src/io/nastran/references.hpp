@@ -47,8 +47,8 @@ struct NumberRange {
 /// Returns the numbers and ranges of the list of a card; nullopt if the list holds anything else.
 std::optional<std::vector<NumberRange>> ranges_of(const CardFields& card, std::size_t list);
 
-/// Returns the numbers of `others` (ascending) in the ranges. Appends the positions of the `items` in the
-/// ranges to `found`, each once.
+/// Returns those of `others`, which ascend, that are in the ranges. Appends to `found` the position of each
+/// item in the ranges, once.
 std::vector<std::int64_t> numbers_in_list(const std::vector<NumberRange>& ranges, const IdMap& items,
                                           const std::vector<std::int64_t>& others, std::vector<Index>& found);
 

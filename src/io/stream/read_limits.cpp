@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kLeastLimit = std::uint64_t{256} << 20;
-constexpr std::uint64_t kMultiple = 100;  // multiple of the files' size
+constexpr std::uint64_t kMultiple = 100;  // bytes of memory for each byte of the files
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): one for each thread
 thread_local ReadScope* current_reading = nullptr;

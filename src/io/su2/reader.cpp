@@ -211,7 +211,7 @@ class Su2Reader {
     if (!in_.at_line_end()) refuse_nodes(kind);
   }
 
-  /// Fails on a line with more numbers than its type has nodes; one number too many has been taken.
+  /// Fails on a line with more than one number after its nodes; the first of these has been taken.
   [[noreturn]] void refuse_nodes(const ElementKind& kind) const {
     const int numbers = kind.nodes + 1 + in_.words_in_line();
     const auto likely =

@@ -24,7 +24,7 @@ namespace {
 
 /// Names, and the name of each cell.
 struct Named {
-  std::vector<std::string> names;  ///< in the order of first appearance; cells count them from 1
+  std::vector<std::string> names;  ///< by first appearance; `of_cell` numbers them from 1
   std::unordered_map<std::string, std::int32_t> number_of;
   std::int32_t current = 0;
   std::vector<std::int32_t> of_cell;  ///< empty until the first statement

@@ -175,7 +175,7 @@ double real_of(const Scanner& at, std::string_view word, std::string_view what);
 /// blanks.
 inline bool fits_columns(std::int64_t number) {
   constexpr std::int64_t kLargest = 999'999'999;
-  return number <= kLargest && number > -kLargest / 10;
+  return number <= kLargest && number >= -kLargest / 10;
 }
 
 }  // namespace meshorder::unv

@@ -37,8 +37,8 @@ struct Partition {
   std::int64_t entries = 0;  ///< length of the connectivity
 };
 
-/// A file of one partition as a list of parts: the arrays of points and cells, then the parts of the mesh.
-/// The offsets are the ends of the cells.
+/// A file of one partition as a list of parts: arrays on points and cells, then points, connectivity, offsets
+/// and types.
 struct RawGrid {
   FileLayout layout;
   vtk::VtkMetadata metadata;  ///< fields and roles

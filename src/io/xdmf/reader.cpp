@@ -403,7 +403,7 @@ class XdmfReader {
     }
   }
 
-  /// Keeps the contents of the files besides the mesh for the writer.
+  /// Keeps for the writer what the files hold besides the mesh.
   void keep_rest(std::int64_t vertices, std::int64_t cells) {
     std::vector<std::size_t> items;
     std::map<std::string, std::set<std::string>> datasets;
