@@ -143,7 +143,7 @@ nlohmann::ordered_json run(std::vector<Runner>& runners, const std::vector<doubl
   return results;
 }
 
-/// Makes runners for all orders on one and two threads, and for single precision in the last order.
+/// Makes runners for all orders on 1 to `threads` threads, and for the last order in single precision.
 std::vector<Runner> make_runners(const mo::Scenario& scenario, const mo::Mesh& mesh, const std::string& file,
                                  const std::vector<std::string>& orders, int threads) {
   std::vector<Runner> runners;

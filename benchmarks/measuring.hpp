@@ -27,7 +27,7 @@ inline double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Measures and prints the rates at which one and two threads read memory, 10⁹ bytes a second.
+/// Measures, prints and returns the rates at which one and two threads read memory, 10⁹ bytes a second.
 inline std::vector<double> measure_bandwidths() {
   std::vector<double> bandwidths;
   for (int threads = 1; threads <= 2; ++threads) {

@@ -16,8 +16,8 @@ namespace HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Computes rounds of multiply-adds, with enough independent ones to fill the pipeline; returns their
-/// operations.
+/// Computes rounds of multiply-adds, with enough independent ones to fill the pipeline; returns how many
+/// operations these are.
 double multiply_and_add(int rounds) {
   using Tag = hn::CappedTag<double, 8>;
   const Tag d;

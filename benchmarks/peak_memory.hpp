@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-/// Measures by how much the process's memory rises after the object is made. Needs Linux with glibc.
+/// A meter of the rise of the process's memory since construction. Needs Linux with glibc.
 class PeakMemory {
  public:
   PeakMemory() {
@@ -18,7 +18,7 @@ class PeakMemory {
     before_ = status("VmRSS:");
   }
 
-  /// Returns the rise in bytes, at the peak.
+  /// Returns the peak rise in bytes.
   [[nodiscard]] std::size_t bytes() const { return status("VmHWM:") - before_; }
 
  private:

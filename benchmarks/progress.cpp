@@ -57,7 +57,7 @@ std::pair<double, Gap> longest_gap(const Call& call) {
   return {seconds_since(start), longest};
 }
 
-/// Returns the time from the first false of the progress function, `after` seconds into the call, to Stopped.
+/// Returns the time from the progress function's last false, at least `after` s into the call, to Stopped.
 template <class Call>
 double time_to_stop(const Call& call, double after) {
   const auto start = Clock::now();

@@ -20,8 +20,8 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-/// Adds the entries of the rotations closest to `count` matrices and returns the largest sum of a lane. Entry
-/// k of matrix i is at [9 (i / 16) + k][i % 16].
+/// Adds up, in each lane, the entries of the rotations closest to `count` matrices; returns the largest
+/// lane's sum. Entry k of matrix i is at [9 (i / 16) + k][i % 16].
 template <class Lanes, class Number>
 double rotate(const Number* matrices, Index count) {
   typename Lanes::Value sum = Lanes::set(0);

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// The functions that the page's worker calls: they take files in memory, order one as `meshorder order` does,
-// and return what the page shows. Of the page's functions, this module calls only `tell`.
+// The functions that the page's worker calls: they take files in memory, order a file as `meshorder order`
+// does, and return what the page shows. Of the page's functions, this module calls only `tell`.
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
@@ -41,7 +41,7 @@ EM_JS(void, tell, (const char* stage, double share), {
 namespace meshorder {
 namespace {
 
-constexpr std::uint64_t kMostMemory = std::uint64_t{4} << 30;  // of a page: 32-bit addresses
+constexpr std::uint64_t kMostMemory = std::uint64_t{4} << 30;  // a page has 32-bit addresses
 const tbb::global_control kOneThread(tbb::global_control::max_allowed_parallelism, 1);
 
 /// The files that the page gave, and those that were written.
@@ -82,7 +82,7 @@ std::vector<Part> parts;
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 /// Adds the parts "places" (of the surface's vertices) and "triangles". Returns the surface's vertices; none
-/// if the mesh has no surface. `mesh` is as it was read.
+/// if the mesh has no surface. `mesh` is not yet ordered.
 std::vector<Index> add_surface(const Mesh& mesh) {
   std::vector<std::array<Index, 3>> triangles;
   try {

@@ -40,8 +40,8 @@ std::vector<std::int64_t> triangles_of(int rank) {
   return vertices;
 }
 
-/// Returns the mean difference of the ends' numbers, over the triangles' edges whose ends are both own
-/// vertices.
+/// Returns the mean difference between the numbers of an edge's ends, over the triangles' edges whose ends
+/// are both own vertices.
 double mean_span(const std::vector<std::int64_t>& vertices, std::int64_t first,
                  const std::vector<std::int64_t>& number) {
   double sum = 0;

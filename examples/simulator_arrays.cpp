@@ -102,7 +102,7 @@ Body sample(int side) {
   return body;
 }
 
-// Returns the sum of mass times volume over the tetrahedra, which the order changes by rounding only.
+// Returns the sum over the tetrahedra of mass times volume; the order changes this sum by rounding only.
 double moment(const Body& body) {
   double sum = 0;
   for (const auto& tet : body.tets) {

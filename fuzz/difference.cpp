@@ -56,7 +56,7 @@ bool near_points(const std::vector<Point>& a, const std::vector<Point>& b) {
   });
 }
 
-/// Returns the points of the vertices of all cells, one after another.
+/// Returns, cell by cell, the points of each cell's vertices.
 std::vector<Point> corners_of(const Mesh& mesh) {
   std::vector<Point> result;
   for (const Index v : mesh.cells.vertices) result.push_back(mesh.points[static_cast<std::size_t>(v)]);
@@ -128,9 +128,9 @@ std::string difference_of_data(const Mesh& a, const Mesh& b) {
   return {};
 }
 
-/// Returns whether two cells of the same shape have the same vertices. VTK's files do not define the
-/// orientation of a linear wedge: for a wedge without a sensible volume, the reader may take the mirror
-/// image.
+/// Returns whether two cells of the same shape have the same vertices in the same order, or are mirrored
+/// linear wedges: VTK's files do not define a wedge's orientation, and the reader may mirror a wedge without
+/// a sensible volume.
 bool same_cell(std::span<const Index> a, std::span<const Index> b) {
   if (std::equal(a.begin(), a.end(), b.begin(), b.end())) return true;
   constexpr std::array<std::size_t, 6> kMirrored{0, 2, 1, 3, 5, 4};

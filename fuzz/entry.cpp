@@ -81,7 +81,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
                                                unsigned seed) {
   constexpr unsigned kOneIn = 2;  // one mutation in this many knows the structure
-  // Libraries crash on some damaged files: a `mutate` that calls a library is used only on whole files.
+  // Libraries crash on some damaged files: a `mutate` that calls a library is used only if files stay whole.
   const bool knows = chosen->by_library ? keeps_files_whole : seed % kOneIn == 0;
   if (chosen->mutate != nullptr && knows) {
     const std::string result = changed({data, data + size}, static_cast<std::uint32_t>(std::mt19937(seed)()));

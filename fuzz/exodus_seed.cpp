@@ -19,7 +19,7 @@ using exodus::NcType;
 
 constexpr std::size_t kNameLength = 33;
 
-/// Declares dimensions and variables of a file; a variable's dimensions come first.
+/// Declares dimensions and variables of a file, each variable after its dimensions.
 class Variables {
  public:
   explicit Variables(NcOutput& file) : file_(file) {}

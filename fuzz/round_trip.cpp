@@ -111,8 +111,8 @@ void check_same_format(const Mesh& mesh, std::string_view format, const std::str
   // cells that alternate between entities of Gmsh make no blocks; if the order has made the cells of an
   // entity adjacent, the mesh that is read back has blocks
   if (format == "gmsh" && mesh.cell_blocks.empty()) again.cell_blocks.clear();
-  // Vega's reader does not keep ids that run from 0 or 1 in the moved mesh, as they are positions; nor does
-  // TetGen's reader, if the ids of each file run so.
+  // Vega's reader takes ids that ascend by one from 0 or 1 for positions and drops them; so does TetGen's
+  // reader, if the ids of each file ascend so.
   if (format == "tetgen" || format == "vega") {
     if (again.vertex_ids.empty() && is_run(mesh.vertex_ids)) again.vertex_ids = mesh.vertex_ids;
     if (again.cell_ids.empty() && cells_run(mesh)) again.cell_ids = mesh.cell_ids;

@@ -39,9 +39,9 @@ extern "C" {
 typedef int32_t mo_status;
 enum {
   MO_OK = 0,
-  MO_INVALID_ARGUMENT = 1, /**< a mistake of the caller: sizes, unknown method, asymmetric graph, NaN */
+  MO_INVALID_ARGUMENT = 1, /**< a mistake of the caller, such as an unknown method or a NaN */
   MO_BAD_INPUT = 2,        /**< a faulty file */
-  MO_TOO_LARGE = 3,        /**< 2^31 vertices or more, or a result that the output's type cannot hold */
+  MO_TOO_LARGE = 3,        /**< a size beyond a limit, such as 2^31 vertices, or beyond an output's type */
   MO_UNAVAILABLE = 4,      /**< a method that this build lacks */
   MO_STOPPED = 5,          /**< the progress callback returned non-zero */
   MO_IO = 6,               /**< the operating system refused an operation on a file */
@@ -54,26 +54,26 @@ enum {
 typedef int32_t mo_type;
 enum { MO_INT32 = 0, MO_UINT32 = 1, MO_INT64 = 2, MO_UINT64 = 3, MO_FLOAT = 4, MO_DOUBLE = 5, MO_UINT8 = 6 };
 
-/** An array that is read during the call, aligned as its type. A null pointer to this structure, or size 0,
- * means no array. */
+/** An array that the call reads; `data` must be aligned for `type`. A null pointer to this structure, or size
+ * 0, means no array. */
 typedef struct mo_in {
   const void* data;
-  int64_t size; /**< numbers, not bytes; >= 0 */
+  int64_t size; /**< number of numbers, not of bytes; >= 0 */
   mo_type type;
 } mo_in;
 
-/** An array that is written during the call, aligned as its type. A null pointer to this structure means
+/** An array that the call writes; `data` must be aligned for `type`. A null pointer to this structure means
  * that the result is not wanted. */
 typedef struct mo_out {
   void* data;
-  int64_t size; /**< numbers; must be the size of the result */
+  int64_t size; /**< number of numbers; must be that of the result */
   mo_type type;
 } mo_out;
 
 /** Values of mo_options.check. */
 enum {
   MO_CHECK_FULL = 0, /**< everything */
-  MO_CHECK_FAST = 1, /**< everything but symmetry */
+  MO_CHECK_FAST = 1, /**< everything but symmetry: accepts an asymmetric graph */
   MO_CHECK_NONE = 2  /**< nothing: faulty input is undefined behaviour */
 };
 
@@ -115,7 +115,7 @@ typedef struct mo_result {
 /** Returns the version of the library: 10000 major + 100 minor + patch. Never fails. */
 MO_API uint32_t mo_version(void);
 
-/** Returns the message of this thread's last failure, one line, or "" if there was none. Valid until this
+/** Returns the one-line message of this thread's last failure; "" if there was none. Valid until this
  * thread's next call. */
 MO_API const char* mo_last_error(void);
 
@@ -145,8 +145,8 @@ MO_API mo_status mo_order_graph(const mo_in* offsets, const mo_in* neighbours, c
  *
  * @param cell_offsets       cells + 1, ascending, the first is `base`
  * @param cell_vertices      vertices of the cells, from `base` on
- * @param vtk_types          VTK's type of each cell (any integer type; VTK has MO_UINT8), or null: all cells
- *                           of one dimension
+ * @param vtk_types          VTK's type of each cell, in integers of any type (VTK's are MO_UINT8); null: all
+ *                           cells have one dimension
  * @param vertex_count       n; 0: as many as there are points
  * @param points             dimension * n coordinates, or null
  * @param dimension          1 to 3; not used without points
@@ -194,11 +194,12 @@ enum {
  * Makes a reorderer. Destroy it by `mo_reorderer_destroy`.
  *
  * @param options         options of every order, or null; `start`, `groups` and `cell_groups` must be empty,
- *                        and `progress` and `user` must stay valid
- * @param slack           share, >= 0, by which the mean log2 of the edges' spans may exceed that in the last
- *                        fresh order before a new order is computed. For points without edges, the limit is
- *                        that mean + slack * log2(number of points). Usual: 0.02
- * @param budget_seconds  >= 0; no new order is computed if the last one took longer; infinity: no limit
+ *                        and `progress` and `user` must stay valid until the reorderer is destroyed
+ * @param slack           >= 0; usual: 0.02. A new order is sought if the mean log2 of the edges' spans is
+ *                        above 1 + slack times its value after the last search for a new order. For points
+ *                        without edges, the limit is that value + slack * log2(number of points + 1)
+ * @param budget_seconds  >= 0; no new order is computed if the last computation took longer. Infinity: no
+ *                        limit
  * @param reorderer       written; null after a failure
  */
 MO_API mo_status mo_reorderer_create(const mo_options* options, double slack, double budget_seconds,
@@ -226,8 +227,8 @@ MO_API mo_status mo_reorderer_update(mo_reorderer* reorderer, const mo_in* offse
                                      const mo_in* points, int32_t dimension, const mo_in* previous,
                                      const mo_out* new_to_old, const mo_out* old_to_new, int32_t* repair);
 
-/** Reports the duration, >= 0, of the step after the last update. From the fifth report on, a new order is
- * computed once slower steps have lost more time than a new order costs. Optional. */
+/** Reports how many seconds, >= 0, the step after the last update took. From the fifth report on, a new order
+ * is computed once slower steps have lost more time than a new order costs. Optional. */
 MO_API mo_status mo_reorderer_observe(mo_reorderer* reorderer, double step_seconds);
 
 /**
@@ -279,15 +280,15 @@ typedef struct mo_patches {
 } mo_patches;
 
 /**
- * Cuts cells into patches, in their order. Within a patch, neighbouring cells are spread over the warps of 32
- * threads.
+ * Cuts cells into patches of `size` consecutive cells. Within a patch, neighbouring cells are spread over the
+ * warps of 32 threads.
  *
  * @param cell_offsets   cells + 1, ascending, the first is `base`
  * @param cell_vertices  vertices of the cells, from `base` on
- * @param vtk_types      VTK's type of each cell, or null: all cells of one dimension
+ * @param vtk_types      VTK's type of each cell; null: all cells have one dimension
  * @param vertex_count   n
+ * @param size           cells of a patch, 2 ... 65535 / vertices of a cell; usual: 256
  * @param options        or null
- * @param size           cells of a patch, 2 ... 65535 / k; usual: 256
  * @param made           written; null after a failure
  */
 MO_API mo_status mo_patches_create(const mo_in* cell_offsets, const mo_in* cell_vertices,
@@ -301,7 +302,7 @@ MO_API void mo_patches_destroy(const mo_patches* made);
 typedef struct mo_gather_lists {
   const int64_t* offsets; /**< vertex_count + 1: where the entries of each vertex begin */
   const int32_t* cells;   /**< the cells of each vertex, ascending */
-  const uint8_t* corners; /**< position of the vertex in that cell */
+  const uint8_t* corners; /**< position of the vertex in each of these cells */
 } mo_gather_lists;
 
 /**
@@ -309,7 +310,7 @@ typedef struct mo_gather_lists {
  *
  * @param cell_offsets   cells + 1, ascending, the first is `base`
  * @param cell_vertices  vertices of the cells, from `base` on
- * @param vtk_types      VTK's type of each cell, or null: all cells of one dimension
+ * @param vtk_types      VTK's type of each cell; null: all cells have one dimension
  * @param vertex_count   n
  * @param options        or null
  * @param made           written; null after a failure
@@ -333,7 +334,7 @@ typedef struct mo_colours {
  *
  * @param cell_offsets   cells + 1, ascending, the first is `base`
  * @param cell_vertices  vertices of the cells, from `base` on
- * @param vtk_types      VTK's type of each cell, or null: all cells of one dimension
+ * @param vtk_types      VTK's type of each cell; null: all cells have one dimension
  * @param vertex_count   n
  * @param options        or null
  * @param made           written; null after a failure
@@ -346,8 +347,8 @@ MO_API mo_status mo_colours_create(const mo_in* cell_offsets, const mo_in* cell_
 MO_API void mo_colours_destroy(const mo_colours* made);
 
 /**
- * Sorts the vertices of each linear triangle or tetrahedron as far as its orientation allows. Needs
- * `vtk_types`.
+ * Sorts the vertices of each cell as far as the cell's orientation allows. All cells must be linear triangles
+ * or tetrahedra.
  *
  * @param cell_offsets   cells + 1, ascending, the first is `base`
  * @param cell_vertices  vertices of the cells, from `base` on
@@ -365,9 +366,11 @@ typedef struct mo_gpu_counts {
   size_t struct_size;
   int64_t requests; /**< additions, or loads and stores; one request serves the 32 threads of a warp */
   int64_t sectors;  /**< 32-byte sectors that requests touch; counted t times if t threads add to one value */
-  int64_t floor;    /**< `sectors` if the values that each warp touches were all different and side by side */
+  /** What `sectors` would be if the values that each warp touches at once were all different and side by side
+   * and, for "patches", no vertex were in two patches. */
+  int64_t floor;
   int64_t dram_bytes; /**< bytes that the last cache reads from memory */
-  int64_t dram_floor; /**< `dram_bytes` if each number were read once */
+  int64_t dram_floor; /**< what `dram_bytes` would be if each number were read once */
 } mo_gpu_counts;
 
 /**
@@ -376,7 +379,7 @@ typedef struct mo_gpu_counts {
  *
  * @param cell_offsets   cells + 1, ascending, the first is `base`
  * @param cell_vertices  vertices of the cells, from `base` on
- * @param vtk_types      VTK's type of each cell, or null: all cells of one dimension
+ * @param vtk_types      VTK's type of each cell; null: all cells have one dimension
  * @param vertex_count   n
  * @param layout         "packed": three values of a vertex side by side; "apart": in three arrays; "padded":
  *                       four values of a vertex side by side, added at once; "patches": as "packed", in
@@ -406,14 +409,14 @@ MO_API mo_status mo_gpu_product_cost(const mo_in* offsets, const mo_in* neighbou
 /** Returns the number of vertex methods, including registered ones. Never fails. */
 MO_API int32_t mo_method_count(void);
 
-/** Returns the name of a vertex method, 0 <= k < mo_method_count(), or null. Valid for the life of the
- * process. */
+/** Returns the name of vertex method k, 0 <= k < mo_method_count(); null for other k. Valid for the life of
+ * the process. */
 MO_API const char* mo_method_name(int32_t k);
 
 /**
  * A vertex method that a user defines.
  *
- * @param user        as registered
+ * @param user        the `user` of `mo_register`
  * @param n           number of vertices
  * @param offsets     n + 1, from 0
  * @param neighbours  ascending in each row, no loops, no repeats, symmetric

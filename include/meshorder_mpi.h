@@ -28,7 +28,7 @@ typedef struct mo_mpi_mesh {
   int64_t vertex_count;         /**< vertices that this rank owns; >= 0 */
   int64_t cell_count;           /**< elements that this rank has; >= 0 */
   const int64_t* cell_offsets;  /**< cell_count + 1, ascending from 0; null without elements */
-  const int64_t* cell_vertices; /**< numbers of the elements' vertices, own or of other ranks */
+  const int64_t* cell_vertices; /**< vertices of each element; any rank may own them */
   const double* points;         /**< x y z of each own vertex; or null on all ranks */
   int64_t cell_vertex_count;    /**< length of cell_vertices: the last offset; 0 without elements */
   int64_t coordinate_count;     /**< length of points: 3 * vertex_count, 0 without points */
@@ -40,7 +40,8 @@ typedef struct mo_mpi_options {
   size_t struct_size;     /**< sizeof(mo_mpi_options) of the caller */
   const char* method;     /**< vertex method for each rank or part; null: "spectral" */
   const char* partition;  /**< how to cut: "ptscotch" (null), "hilbert", "rsb", or "order": equal ranges
-                             of one order of the whole mesh, by the method "fiedler" only */
+                             of one order of the whole mesh; "order" needs the method "fiedler" and the
+                             balance "vertices", and excludes interface_last */
   const char* balance;    /**< every part gets equally many "vertices" (null) or "cells" */
   uint64_t seed;          /**< of the method; default 0 */
   int32_t parts;          /**< at most the number of vertices; 0 (default): one for each rank */
@@ -55,13 +56,13 @@ typedef struct mo_mpi_options {
 MO_API void mo_mpi_options_init(mo_mpi_options* options, size_t struct_size);
 
 /**
- * Orders the vertices of every rank among themselves: each stays with its owner. A rank's order begins near
+ * Orders each rank's vertices among themselves: vertices stay with their owners. A rank's order begins near
  * the rank before it and ends near the rank after it, as far as possible.
  *
  * An element may be on several ranks (ghost layers); each rank orders all elements that it has.
  *
- * @param communicator  Fortran handle of the ranks that share the mesh
- * @param mesh          of this rank
+ * @param communicator  Fortran handle of the communicator whose ranks share the mesh
+ * @param mesh          this rank's share
  * @param options       or null; `parts`, `partition` and `balance` are not used
  * @param new_numbers   vertex_count numbers: the new number of each own vertex, within the rank's own range
  * @param cell_order    cell_count numbers, or null: the elements in their new order, by `lexmax`: entry k is
@@ -77,8 +78,8 @@ MO_API mo_status mo_mpi_order_ranks(int32_t communicator, const mo_mpi_mesh* mes
  * Needs coordinates. Each element must be on exactly one rank. Without MPI_THREAD_MULTIPLE
  * "hilbert" replaces "ptscotch".
  *
- * @param communicator  Fortran handle of the ranks that share the mesh
- * @param mesh          of this rank
+ * @param communicator  Fortran handle of the communicator whose ranks share the mesh
+ * @param mesh          this rank's share
  * @param options       or null
  * @param new_numbers   vertex_count numbers: the new number of each own vertex
  * @param part_starts   parts + 1 numbers: the first new number of each part, then the end of the last part;

@@ -2,7 +2,7 @@
 //
 // Triangulates sets of points for `meshorder simulate splash` until the end of the input.
 //
-// Reads, in the machine's byte order, a number n (8 bytes), then n points of three doubles. Writes:
+// Numbers are in the machine's byte order. Reads n (8 bytes), then n points of three doubles. Writes:
 // - the number m of tetrahedra (8 bytes);
 // - for each tetrahedron, the numbers of its four corners (4 bytes each); points are numbered from 0;
 // - for each tetrahedron, the numbers of its four neighbours (4 bytes each), each opposite a corner; −1 where

@@ -54,7 +54,7 @@ std::vector<OrderingSpec> orderings_of_report() {
           {"scrambled", "Scrambled", "scrambled", "scrambled"}};
 }
 
-/// Returns whether an order differs from another one only in its elements; for a matrix, the two are equal.
+/// Returns whether an order differs from another only in the elements, so that a matrix does not need it.
 bool orders_elements(const OrderingSpec& ordering) { return ordering.name == "vf-fiedler"; }
 
 /// Returns the predicted times of an order, and its measured times if all kernels have them.
@@ -151,8 +151,8 @@ std::string title_of(const Page& page) {
   return fmt::format("The gain from orders of {}", fmt::join(names, ", "));
 }
 
-/// Throws InvalidArgument unless the output's name has the extension of a page: the page would overwrite the
-/// file, which may be a mesh.
+/// Throws InvalidArgument unless the output's name has the extension of a page: the page would overwrite
+/// another file, perhaps a mesh.
 void check_name_of_page(const std::string& output, const char* of) {
   const std::string extension = fs::path(output).extension().string();
   if (same_but_for_case(extension, ".html") || same_but_for_case(extension, ".htm")) return;

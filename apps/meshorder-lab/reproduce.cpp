@@ -27,7 +27,7 @@
 namespace meshorder::command {
 namespace {
 
-/// Seconds for each scenario with --quick, in all orders together.
+/// With --quick, seconds for all orders of a scenario together.
 constexpr double kQuickSeconds = 20;
 
 struct ReproduceArguments : Common {

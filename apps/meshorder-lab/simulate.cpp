@@ -84,7 +84,7 @@ Scenario scenario_of(const SimulateArguments& arguments) {
     MeshMethods order = order_named(arguments.order);
     scenario.vertex_order = std::move(order.vertices);
     scenario.element_order = std::move(order.elements);
-    // the tetrahedra of a fluid are sorted in each step, so `auto` takes the method that pays at once
+    // a fluid's tetrahedra are sorted in each step, so `auto` has to choose a method that pays at once
     if (scenario.is_fluid() && arguments.order.find('/') == std::string::npos)
       scenario.element_order = "auto";
   }

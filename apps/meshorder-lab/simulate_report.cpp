@@ -264,8 +264,8 @@ void print_steps(const Console& console, const Scenario& scenario, const MotionR
                   record.steps.back().report.vertices_in_itself);
 }
 
-/// Prints the distance of the body from its shape at rest, and the step from which on this distance is within
-/// 1 % of the body's height.
+/// Prints the distance of the body from its shape at rest; if the distance ends within 1 % of the body's
+/// height, also the step from which on it stays there.
 void print_shape(const Console& console, const Simulation& simulation, const MotionRecord& record) {
   const BoundingBox box = bounding_box(simulation.mesh.points, simulation.vertices);
   const double near = 0.01 * (box.high[1] - box.low[1]);

@@ -26,7 +26,7 @@ class Lines {
  public:
   Lines(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
 
-  /// Moves to the next line that is neither blank nor a comment; false at the end of the text.
+  /// Moves to the next line that is neither blank nor a comment. Returns false if there is none.
   bool next() {
     while (!text_.empty()) {
       const auto end = text_.find('\n');

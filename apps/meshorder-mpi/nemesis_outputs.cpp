@@ -68,13 +68,13 @@ std::vector<std::string> NemesisOutputs::open(Index parts) {
 }
 
 void NemesisOutputs::add_to(OutputSet& set) {
-  // removed before new pieces are in place: a reader would not notice that pieces come from two runs
+  // remove the old first piece before pieces are put in place: no reader then mixes two runs
   set.remove_first(FilePath::derived(names_.front()));
   for (const fs::path& old : old_pieces()) {
     if (std::find(names_.begin(), names_.end(), old.string()) == names_.end())
       set.remove(FilePath::derived(old));
   }
-  for (std::size_t k = 1; k <= files_.size(); ++k)  // the first piece last
+  for (std::size_t k = 1; k <= files_.size(); ++k)  // adds piece 0 last
     set.add(std::move(files_[k % files_.size()]));
   files_.clear();
 }

@@ -83,7 +83,7 @@ bool needs_root(const Arguments& arguments) {
          !arguments.points.empty();
 }
 
-/// Throws SharedError if one process, started alone, is to write pieces and no number of parts is given.
+/// Throws SharedError if a process that was started alone has to write pieces without a number of parts.
 void check_count_of_pieces(const Communicator& communicator, const Arguments& arguments) {
   communicator.together([&] {
     if (arguments.is_started_as_rank || arguments.parts > 0 || arguments.pieces.empty()) return;
@@ -123,7 +123,7 @@ void require_points_of(const Communicator& communicator, const Mesh& mesh, const
 /// - the input is not a .vtu, .vtkhdf or .xdmf file;
 /// - the output has another extension than the input;
 /// - rank 0 has to read and write;
-/// - maps are wanted without an output, or for cells whose nodes have another order in a Mesh;
+/// - maps are wanted, but no output is, or the file orders the nodes of its cells unlike a Mesh;
 /// - pieces of an .xdmf file, or pieces in Nemesis, are wanted.
 std::optional<FileHead> head_of(const Communicator& communicator, const Arguments& arguments) {
   const auto extension = [](const std::string& name) { return std::filesystem::path(name).extension(); };
@@ -140,8 +140,9 @@ std::optional<FileHead> head_of(const Communicator& communicator, const Argument
   return head;
 }
 
-/// Returns the input if it is an Exodus file that all ranks can read in parts, rank 0 need not read and
-/// write, and the run writes only pieces, perhaps with maps.
+/// Returns the input if all ranks can read it in parts as an Exodus file; nothing if they cannot or if
+/// - an output is wanted, or rank 0 has to read and write;
+/// - pieces in Nemesis are wanted but cannot keep the file's blocks.
 std::optional<ExodusSlices> exodus_slices_of(const Communicator& communicator, const Arguments& arguments) {
   if (!arguments.output.empty() || needs_root(arguments)) return std::nullopt;
   std::optional<ExodusSlices> slices = ExodusSlices::open(communicator, arguments.input);
@@ -165,7 +166,7 @@ std::int64_t peak_memory() {
   return std::int64_t{usage.ru_maxrss} * 1024;  // Linux counts in KiB
 }
 
-/// Prints the report on an order, without the files.
+/// Prints the report on an order, without file names.
 ///
 /// @param stored  null unless the mesh is a matrix or graph
 void print_report(const Console& console, const DistributedOptions& options, const DistributedReport& report,

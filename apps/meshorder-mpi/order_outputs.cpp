@@ -32,7 +32,7 @@ std::array<std::vector<std::string>, 2> opened(const Communicator& communicator,
   return {std::move(paths), communicator.broadcast(outputs ? outputs->names() : std::vector<std::string>{})};
 }
 
-/// Adds notes that are not there yet: two writers may report the same loss.
+/// Adds the notes of `found` that are new: two writers may report the same loss.
 void add_new(const Notes& found, Notes& notes) {
   std::copy_if(found.begin(), found.end(), std::back_inserter(notes), [&](const std::string& note) {
     return std::find(notes.begin(), notes.end(), note) == notes.end();

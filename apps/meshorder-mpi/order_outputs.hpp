@@ -21,10 +21,10 @@ namespace meshorder::command {
 
 /// The files of a mesh: input, and as output a file, pieces, or both.
 struct OrderFiles : MeshFiles {
-  std::string pieces;  ///< folder, a .vtkhdf file, or a name of Exodus II; empty: no pieces
+  std::string pieces;  ///< a folder, a .vtkhdf file or an Exodus II name; empty: no pieces
   int ghosts = 1;      ///< layers of ghost cells in pieces, 0 or 1
 
-  /// Returns the files. Without an output, `output` becomes a name with the extension of the pieces, which
+  /// Returns the files. If there is no output, `output` is a name with the extension of the pieces, which
   /// sets the format.
   [[nodiscard]] MeshFiles with_output() const;
   /// Returns whether the pieces are the partitions of one file.
@@ -42,7 +42,7 @@ class OrderOutputs {
   /// Checks, before the work, that the files can be written.
   ///
   /// @param files  outlives this object
-  /// @throws SharedError if the files cannot be written
+  /// @throws SharedError if the files cannot be written or do not fit together
   OrderOutputs(const distributed::Communicator& communicator, const OrderFiles& files);
 
   /// Checks, before the work, that pieces can hold the cells of a mesh that the root has read.

@@ -79,7 +79,7 @@ PieceOutputs::PieceOutputs(fs::path folder, std::string name)
 PieceOutputs::~PieceOutputs() {
   files_.clear();
   std::error_code ignored;
-  if (is_made_) fs::remove(folder_, ignored);  // does nothing if an output is in it
+  if (is_made_) fs::remove(folder_, ignored);  // does nothing if files are in the folder
 }
 
 fs::path PieceOutputs::index() const { return folder_ / (name_ + ".pvtu"); }
@@ -118,7 +118,7 @@ std::vector<std::string> PieceOutputs::open(Index pieces) {
 }
 
 void PieceOutputs::add_to(OutputSet& set, const std::string& index_text) {
-  // removed before new pieces are in place: a reader would not notice that pieces come from two runs
+  // remove the old index before pieces are put in place: no reader then mixes two runs
   set.remove_first(FilePath::derived(index()));
   for (const fs::path& old : old_pieces()) {
     if (std::find(names_.begin(), names_.end(), old.filename().string()) == names_.end())

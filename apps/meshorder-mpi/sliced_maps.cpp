@@ -26,7 +26,7 @@ using distributed::Layout;
 using distributed::MeshSlice;
 using distributed::SharedFile;
 
-/// Returns the checksum of a list that is distributed over the ranks, in rank order.
+/// Returns the checksum of a list whose parts the ranks hold in rank order.
 std::uint64_t checksum_of(const Communicator& communicator, const Layout& layout,
                           const std::vector<GlobalIndex>& own) {
   Checksum checksum;
@@ -54,7 +54,7 @@ class MapWriter {
   MapWriter(const Communicator& communicator, OutputSet& outputs)
       : communicator_(communicator), outputs_(outputs) {}
 
-  /// Writes a list of positions that is distributed over the ranks, in the format of `write_npy`.
+  /// Writes, in the format of `write_npy`, a list of positions that is distributed over the ranks.
   void write(const std::string& name, const Layout& layout, const std::vector<GlobalIndex>& own) {
     write(name, layout, own, layout.size() <= kMaxIndex);
   }
@@ -82,7 +82,7 @@ class MapWriter {
     written.push_back(name);
   }
 
-  /// Writes a map, its inverse, and the file's old numbers unless `ids` is null.
+  /// Writes a map and its inverse, and the old numbers if `ids` is not null.
   void write_all(const MapPaths& paths, const Layout& layout, const std::vector<GlobalIndex>& new_numbers,
                  const std::vector<std::int64_t>* ids) {
     write(paths.old_to_new, layout, new_numbers);

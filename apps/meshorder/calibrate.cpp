@@ -43,7 +43,7 @@ auto watched(const CalibrateArguments& arguments, const std::string& what, const
 std::string in_bytes(Offset bytes) { return to_string(Caches{{bytes}}); }
 
 std::string in_columns(const KernelCosts& costs) {
-  // rounds costs to a ten thousandth of a nanosecond
+  // rounds costs to multiples of 0.0001 ns
   const auto cell = [](double cost, int width) {
     return fmt::format(" {:>{}.3g}", std::round(1e4 * cost) / 1e4, width - 1);
   };

@@ -86,7 +86,7 @@ void add_cache_option(CLI::App& subcommand, std::string& caches);
 
 /// Accepts finite numbers above 0.
 CLI::Validator positive();
-/// Accepts whole numbers from `lowest` to `highest`, whose default is the largest int.
+/// Accepts whole numbers from `lowest` to `highest` (default: the largest int).
 CLI::Validator whole_from(std::uint64_t lowest, std::uint64_t highest = std::numeric_limits<int>::max());
 /// Accepts whole numbers from `lowest` to `highest`.
 CLI::Validator in_range(int lowest, int highest);

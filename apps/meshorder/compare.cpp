@@ -61,8 +61,8 @@ std::vector<MeshMethods> methods_of(const std::vector<std::string>& names) {
   return methods;
 }
 
-/// Returns the methods for the rows of a matrix; its entries stay in the file's order. The default methods
-/// include those that need points only if the matrix has coordinates.
+/// Returns the methods for the rows of a matrix; its entries stay in the file's order. Without coordinates,
+/// the default methods are only those that need none.
 std::vector<MeshMethods> methods_of_matrix(const Mesh& mesh, const CompareArguments& arguments) {
   std::vector<std::string> names = arguments.methods;
   for (const std::string& name : names) {

@@ -46,8 +46,7 @@ std::string sentence_on(const ComparisonReport& report, const Advice& advice, Wo
 
 constexpr int kBarWidth = 12;
 
-/// A column of the table: the factor of each order over the file's own order, and last that of the band if it
-/// is known.
+/// A column of the table: each order's factor over the file's own order; then the band's factor, if known.
 struct Column {
   std::string title;
   std::vector<double> factors;

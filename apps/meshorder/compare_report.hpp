@@ -13,7 +13,7 @@
 
 namespace meshorder::command {
 
-/// A comparison, and what its report shows besides.
+/// A comparison with the further data of its report.
 struct ComparisonReport : MeshComparison {
   std::string file = {};
   std::string size = {};                       ///< in words

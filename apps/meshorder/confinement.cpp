@@ -136,7 +136,7 @@ class Reading {
     (void)::getrusage(RUSAGE_SELF, &used);
     (void)::getrlimit(RLIMIT_CPU, &before_);
     struct rlimit limit = before_;
-    // one second below the hard limit, at which the system kills without a message, if there is such a limit
+    // one second below the hard limit, if there is one: at that limit, the system kills without a message
     const rlim_t hard =
         before_.rlim_max == RLIM_INFINITY || before_.rlim_max < 2 ? before_.rlim_max : before_.rlim_max - 1;
     const auto used_seconds = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec);
@@ -221,7 +221,8 @@ int report_ending(const Work& of_child, int signal) {
   return report_failure(error.what(), kBadInput);
 }
 
-/// Serves the child and waits; removes unfinished outputs and unpacked files; ends with the child's status.
+/// Serves the child until it ends; removes unfinished outputs and unpacked files; reports a crash or a hang
+/// of the child, or ends with the child's status.
 [[noreturn]] void supervise(const Work& of_child, std::unique_ptr<OutputDeputy> deputy,
                             std::unique_ptr<PrivateFolder> unpacked) {
   deputy->serve_child();

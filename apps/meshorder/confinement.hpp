@@ -25,7 +25,7 @@ struct Files {
 /// Continues in a child process if a library, not meshorder, parses one of the meshes. The child can reach
 /// only these files and the stored calibrations (see `give_up_rights`): a damaged or malicious file can harm
 /// nothing else. Returns in the child only. The parent waits, passes signals on, and ends with the child's
-/// status. If a library crashes or does not end, the parent removes unfinished outputs, prints one line of
+/// status. If a library crashes or does not end, the parent removes unfinished outputs, prints a one-line
 /// error and ends with status 2.
 ///
 /// Does nothing for trusted files (`--trust`), or if the system cannot make a child. Call it while there is
@@ -36,7 +36,7 @@ void confine(const Files& files);
 void trust_files();
 
 /// Bytes for each entry of a graph, like kBytesToOrder: kBytesToPredict to predict times; kBytesToMeasure to
-/// run kernels, for each order in memory at a time.
+/// run kernels, for each order that is in memory.
 inline constexpr std::uint64_t kBytesToPredict = 64;
 inline constexpr std::uint64_t kBytesToMeasure = 100;
 

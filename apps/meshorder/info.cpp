@@ -89,8 +89,8 @@ bool fits_in_first_cache(const CsrGraph& graph) {
 /// How the gain is determined.
 enum class By : std::uint8_t { prediction, quick_measurement, measurement, counts };
 
-/// Returns how the gain is determined: by a short measurement on small meshes, unless the user requests
-/// something else; by a prediction on large meshes.
+/// Returns how the gain is determined: as the user requests; by default, by a short measurement for small
+/// meshes and by a prediction for large ones.
 By judged_by(const InfoArguments& arguments, const Mesh& mesh, SimplicesRef simplices,
              const MachineChoice& machine) {
   if (arguments.gpu) return By::counts;
@@ -101,7 +101,7 @@ By judged_by(const InfoArguments& arguments, const Mesh& mesh, SimplicesRef simp
   return asks_for_times || simplices.size() > most ? By::prediction : By::quick_measurement;
 }
 
-/// Returns `halvings` for `reuse_of_kernels`: 0, that is all cache lines, if --cache is given.
+/// Returns `halvings` for `reuse_of_kernels`: 0 (all cache lines) if --cache is given.
 int halvings_of(const InfoArguments& arguments, SimplicesRef simplices) {
   return arguments.caches.empty() ? halvings_for(simplices.size()) : 0;
 }

@@ -20,9 +20,9 @@ void add_all_threads_option(CLI::App& subcommand, bool& all_threads);
 /// Adds --kernels, plain or tuned.
 void add_kernels_option(CLI::App& subcommand, KernelSet& kernels);
 
-/// Returns the machine to predict for. If `choice` only replaces this machine, which is not yet calibrated,
-/// says so on stderr unless `quiet`, calibrates this machine and stores the result. Adds a sentence to
-/// `notes` if something goes wrong.
+/// Returns the machine to predict for. If `choice` stands in for this machine, calibrates this machine and
+/// stores the result; if not `quiet`, first says so on stderr. Adds a sentence to `notes` if something goes
+/// wrong.
 MachineChoice calibrated(MachineChoice choice, bool all_threads, Progress& progress, bool quiet,
                          Notes& notes);
 

@@ -115,7 +115,7 @@ struct Subcommand {
   void (*add)(CLI::App& subcommand);
 };
 
-/// The subcommands in the order of the help, which then lists those of the laboratory, and `methods`.
+/// The first subcommands of the help, in its order; those of the laboratory and `methods` follow.
 constexpr std::array kSubcommands{
     Subcommand{"order", add_order},
     Subcommand{"apply", add_apply},

@@ -105,7 +105,7 @@ MapChecksums checksums_of_maps(const Maps& maps) {
           checksum_of(maps.vertex_ids), checksum_of(maps.cell_ids), checksum_of(maps.kept)};
 }
 
-/// The names of the checksums of maps in PREFIX.maps.json.
+/// The names of the maps' checksums in PREFIX.maps.json.
 constexpr std::array<std::pair<const char*, std::uint64_t MapChecksums::*>, 5> kOfMaps{
     {{"vertices", &MapChecksums::vertices},
      {"cells", &MapChecksums::cells},
@@ -113,8 +113,8 @@ constexpr std::array<std::pair<const char*, std::uint64_t MapChecksums::*>, 5> k
      {"cell_ids", &MapChecksums::cell_ids},
      {"kept", &MapChecksums::kept}}};
 
-/// Content of PREFIX.maps.json: checksums of the mesh before and after, and of the maps. A checksum may
-/// be missing if another program wrote the data.
+/// Content of PREFIX.maps.json: checksums of the mesh in both orders, and of the maps. A checksum may be
+/// missing if another program wrote the file.
 struct Identity {
   std::optional<MeshChecksums> before;
   std::optional<MeshChecksums> after;

@@ -82,9 +82,8 @@ std::string write_identity(const MeshChecksums& before, const MeshChecksums& aft
 /// cells.
 void remove_other_maps(const std::string& prefix, OutputSet& files);
 
-/// Removes from a mesh the cells that were left out before it was ordered, with the notes of `keep_cells`.
-/// A mesh that has exactly the kept cells stays as it is. Throws Error for positions that do not fit the
-/// mesh.
+/// Removes from a mesh the cells that were left out before it was ordered, and adds notes on the losses. A
+/// mesh that has exactly the kept cells stays as it is. Throws Error for positions that do not fit the mesh.
 void leave_out_unmapped_cells(const std::string& prefix, Mesh& mesh, Notes& notes);
 
 /// Reads the maps of a mesh that is in its old order or, if `inverse`, in the new one. Throws Error if:

@@ -15,7 +15,7 @@ void add_points_option(CLI::App& subcommand, std::string& points);
 /// Returns the list {`name`} for a member of `Files`; an empty list for an empty name.
 std::vector<std::string> named_files(const std::string& name);
 
-/// Gives the rows of a matrix or graph the coordinates in a file (see `read_points`); does nothing for an
+/// Reads coordinates for the rows of a matrix or graph from a file (see `read_points`); does nothing for an
 /// empty name. Throws InvalidArgument for a mesh, which has its own coordinates, and InputError for a faulty
 /// file.
 void take_points(Mesh& mesh, const std::string& input, const std::string& points);

@@ -24,7 +24,7 @@ struct MatrixReport {
   PatternFacts facts;
 };
 
-/// Prints the names of arrays and sets, without a matrix's values.
+/// Prints the names of arrays and sets, except a matrix's values.
 void print_attachments(const Console& console, const Mesh& mesh, const char* on_vertices,
                        const char* on_cells);
 

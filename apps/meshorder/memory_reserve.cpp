@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Replaces operator new. If the system has no memory, it serves small blocks from a reserve, and the command
-// ends with a message. Without the reserve, destructors that allocate memory would terminate the command:
+// Replaces operator new. If the system has no memory, small blocks come from a reserve, and the command ends
+// with a message. Without the reserve, destructors that allocate memory would terminate the command:
 // nlohmann::json moves its values into a vector before it destroys them.
 #include <algorithm>
 #include <array>
@@ -15,13 +15,12 @@
 namespace meshorder::command {
 namespace {
 
-/// Blocks cut one after another from an array. Their memory is used again only after all blocks are given
+/// An array from which blocks are cut one by one. Its memory is used again only after all blocks are given
 /// back.
 class MemoryReserve {
  public:
-  /// Returns a block aligned for any type, or nullptr if it is too large or the array has no room. Blocks
-  /// take at most three quarters of the array; while the stack is being unwound, destructors may use the
-  /// rest.
+  /// Returns a block aligned for any type, or nullptr if `size` is too large or there is no room. Blocks take
+  /// at most three quarters of the array; while the stack is being unwound, destructors may use the rest.
   void* take(std::size_t size) noexcept {
     const bool unwinding = std::uncaught_exceptions() > 0;
     const std::size_t limit = unwinding ? bytes_.size() : bytes_.size() / 4 * 3;

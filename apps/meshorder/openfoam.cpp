@@ -37,7 +37,7 @@ namespace fs = std::filesystem;
 
 struct OpenFoamArguments : Common {
   OpenFoamArguments() {
-    // Cuthill-McKee's orders need the fewest iterations of DIC and compute fastest (docs/hosts.md)
+    // solvers with DIC iterate least and run fastest in Cuthill-McKee's orders (docs/hosts.md)
     ordering.workload = Workload::bandwidth;
   }
 
@@ -106,7 +106,7 @@ class Case {
     return fmt::format("change {}, which requests another order; then {}", dictionary().string(), command);
   }
 
-  /// Returns warnings on a case with several times.
+  /// Returns warnings on several time folders, and on meshes in them that are not ordered.
   [[nodiscard]] Notes warnings() const {
     Notes notes;
     std::vector<std::string> times = folders_in(folder_ / meshes_.front());

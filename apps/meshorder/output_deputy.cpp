@@ -203,7 +203,7 @@ Scratch OutputDeputy::taken(const std::string& scratch, const FilePath& target) 
   }
   if (!S_ISREG(status.st_mode) || status.st_nlink != 1)
     throw Error(Code::internal, "the reading process did not make an ordinary file");
-  constexpr mode_t kOfPrograms = S_ISUID | S_ISGID;  // such programs run with the rights of their owner
+  constexpr mode_t kOfPrograms = S_ISUID | S_ISGID;  // programs then run as their owner or group
   if ((status.st_mode & kOfPrograms) != 0) {
     const Descriptor opened(own.file(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
     (void)::fchmod(opened.get(), status.st_mode & ~kOfPrograms & 07777U);

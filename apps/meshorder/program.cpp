@@ -55,7 +55,7 @@ void keep_freed_memory() noexcept {
 #endif
 }
 
-/// Adds the options that all programs have, then those of the program, to the parser.
+/// Adds to the parser the options that all programs have, then those of `program`.
 void describe(const Program& program, CLI::App& app, std::vector<std::string>& arguments) {
   app.name("meshorder");
   app.set_version_flag("-V,--version", MESHORDER_VERSION);

@@ -25,7 +25,7 @@ class StageTimes {
   /// Returns the time of a stage; 0 if there was none.
   [[nodiscard]] double seconds(const std::string& stage) const;
 
-  /// Prints a line for each stage: its name, time and bytes per second.
+  /// Prints a line for each stage and for all: name, time, bytes per second.
   void print(const Console& console) const;
 
   /// Returns [{"stage", "seconds", "bytes"}, …]; bytes are null if a stage has none.

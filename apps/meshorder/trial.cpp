@@ -200,7 +200,7 @@ class Trial {
     }
   }
 
-  /// Returns a remedy if the command gives CalculiX a name with extension, which it adds itself; else "".
+  /// Returns a remedy if the command names the mesh with .inp, which CalculiX adds itself; else "".
   [[nodiscard]] std::string remedy() const {
     const bool is_calculix = fs::path(program_).filename().string().starts_with("ccx");
     if (!is_calculix || !std::ranges::count(options_.command, "{}")) return {};
@@ -308,7 +308,7 @@ class Trial {
     });
   }
 
-  /// Makes an order, unless an equal order exists.
+  /// Makes an order and adds it if no equal one exists.
   void add_order(const std::string& name) {
     TriedOrder order{.name = name, .methods = order_named(name), .by_auto = name == "auto"};
     if (is_there(order.methods)) return;
@@ -330,7 +330,7 @@ class Trial {
     }
   }
 
-  /// Returns whether an earlier order has the same files.
+  /// Completes an order; returns whether an earlier one has equal files.
   bool is_known(std::size_t number) {
     folder_.complete_order(number);
     for (std::size_t other = 1; other < number; ++other) {

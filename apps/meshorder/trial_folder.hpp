@@ -49,9 +49,9 @@ class TrialFolder {
 
   /// Moves the files of an order into the program's directory.
   void begin_run(std::size_t order);
-  /// Moves the files of the order back, restores the files beside the mesh and removes everything else. If
-  /// `kept` is not empty, first copies the program's output files to the folder `kept`. Throws
-  /// InvalidArgument if the program changed its mesh or a linked file.
+  /// If `kept` is not empty, copies the program's output files to the folder `kept`. Then moves the files of
+  /// the order back, removes everything else and restores the files beside the mesh. Throws InvalidArgument
+  /// if the program changed its mesh or a linked file.
   void end_run(std::size_t order, const std::filesystem::path& kept = {});
 
  private:

@@ -204,7 +204,7 @@ class Processes {
   pid_t program_;
 };
 
-/// Waits for the end of the program, which a signal or the timeout kills; returns the signal, or 0.
+/// Waits until the program ends; kills it at a signal or the timeout. Returns the signal, or 0.
 int await(const Processes& processes, double timeout_seconds, TrialRun& run) {
   const Stopwatch stopwatch;
   const sigset_t awaited = awaited_signals();

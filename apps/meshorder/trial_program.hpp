@@ -54,13 +54,13 @@ struct TrialRun {
   [[nodiscard]] bool succeeded() const { return exit_status == 0 && !timed_out; }
 };
 
-/// Returns the absolute path of a program, found as by a shell: a name with a slash is a path, other names
+/// Returns the absolute path of a program, found as a shell does: a name with a slash is a path, other names
 /// are looked up in PATH. Throws InvalidArgument if there is no such program or it cannot be executed.
 std::string find_program(const std::string& name);
 
-/// Runs a program, without a shell and with an empty standard input, in a process group of its own, and waits
-/// for it. Kills the processes that it left running. Throws InvalidArgument if it cannot be executed,
-/// InternalError if no process can be started, Interrupted at a signal.
+/// Runs a program in a process group of its own, without a shell and with an empty standard input. Waits for
+/// the program and kills the processes that it left running. Throws InvalidArgument if the program cannot be
+/// executed, InternalError if no process can be started, Interrupted at a signal.
 TrialRun run_program(const TrialCommand& command);
 
 /// Returns why a run failed: "exit status 3: *ERROR in readinput …". The line is the last that reports an

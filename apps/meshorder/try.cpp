@@ -47,7 +47,7 @@ void check_program(const TryArguments& arguments) {
                   in_shell(arguments.input), is_case ? "icoFoam" : "solver {}"));
 }
 
-/// Throws unless the command names the mesh, except for a case, and --keep is a new or empty folder.
+/// Throws unless the command names the mesh (not needed for a case) and --keep is a new or empty folder.
 void check_command(const TrialOptions& options, const TrialSubject& subject) {
   if (subject.name() != "." &&
       std::none_of(options.command.begin() + 1, options.command.end(), [](const std::string& word) {

@@ -17,7 +17,7 @@
 namespace meshorder {
 namespace {
 
-constexpr double kJitter = 0.3;  // of a spacing
+constexpr double kJitter = 0.3;  // in spacings
 
 /// Returns the number of cells along an edge of a cube of about `count` cells.
 Index along_edge(Index count) { return static_cast<Index>(std::lround(std::cbrt(count))); }

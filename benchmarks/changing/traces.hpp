@@ -16,8 +16,8 @@ struct TraceStep {
   std::vector<Index> corners = {};  ///< 4 of each tetrahedron
   /// The number of each point in the previous step; −1 for a new point. Empty: the same numbers.
   std::vector<Index> previous = {};
-  /// For each point of the previous step, the number of the point that a program now stores in its place; −1:
-  /// it is removed, and the points after it move up. Empty: the same numbers. New points are stored last.
+  /// For each point of the previous step, the number of the point that a program now stores in that place;
+  /// −1: the point is removed, and those after it move up. Empty: the same numbers. New points are last.
   std::vector<Index> successors = {};
 };
 
@@ -39,7 +39,7 @@ class Trace {
 /// stir    points of a jittered lattice turn in rolls, at most 0.3 spacings a step
 /// churn   the same, and in each step 2 % of the points vanish and are replaced by points elsewhere
 /// refine  a ball travels, which adds eight points for each point of the lattice
-/// cut     the tetrahedra along a plane are taken out, a few in each step
+/// cut     the tetrahedra along a plane are removed, a few in each step
 /// dam     a dam break, the scenario `splash`
 /// Throws std::invalid_argument for other names.
 std::unique_ptr<Trace> make_trace(const std::string& name, Index count, Index steps);

@@ -33,7 +33,7 @@ double processor_seconds() {
   return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
 }
 
-/// Returns at the first rank the numbers of all ranks, one after another.
+/// Returns, at the first rank, the numbers of all ranks, one rank after another.
 std::vector<int> gathered(const std::vector<int>& own) {
   const int count = static_cast<int>(own.size());
   std::vector<int> counts(static_cast<std::size_t>(ranks())), starts(counts.size(), 0);

@@ -23,7 +23,7 @@ struct Range {
 /// Returns this rank's share of `count` items; the shares' sizes differ by at most 1.
 Range own_range(std::int64_t count);
 
-/// Partitions, prints the processor seconds in user mode of all ranks together, and writes the parts.
+/// Partitions, prints the sum of all ranks' processor seconds in user mode, and writes the parts.
 ///
 /// @param path       of the .npy file
 /// @param partition  returns the parts of this rank's range

@@ -26,7 +26,7 @@ using namespace meshorder;
 struct Arguments {
   CsrGraph graph;
   double tolerance;              ///< in the solver's own sense
-  std::filesystem::path vector;  ///< to write
+  std::filesystem::path vector;  ///< file to write
 };
 
 inline Arguments read_arguments(int argc, char** argv) {

@@ -25,7 +25,7 @@ constexpr To bit_cast(const From& from) noexcept {
   return __builtin_bit_cast(To, from);
 }
 
-/// Plain reads and writes, since there is only one thread.
+/// An atomic_ref for one thread: plain reads and writes.
 template <class T>
 class atomic_ref {
  public:

@@ -9,7 +9,7 @@ namespace meshorder::fuzz {
 
 /// Checks the files of a mesh (see `input_files` and `check_mesh_files`).
 void check_mesh_family(std::string_view family, Family::Bytes input);
-/// Checks a folder `polyMesh`, as read to order its cells: `owner`, `neighbour`, `points` and `faces`.
+/// Checks a folder `polyMesh`, read as for ordering its cells: `owner`, `neighbour`, `points`, `faces`.
 void check_openfoam(std::string_view family, Family::Bytes input);
 /// Checks a NumPy array: written and read again, and read as a permutation, as by `--maps`.
 void check_npy(std::string_view family, Family::Bytes input);

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// The C interface, with arrays of all types, sizes and values.
+// Checks of the C interface, with arrays of all types, sizes and values.
 #include "fuzz/families/families.hpp"
 #include "fuzz/families/scratch.hpp"
 

@@ -57,7 +57,7 @@ bool change_values(hdf5::File& file, Choice& choice) {
   return true;
 }
 
-/// Adds the paths of a group's objects to `paths`, up to a depth and a number, since links may form cycles.
+/// Adds the paths of a group's objects to `paths`; limits depth and number, since links may form cycles.
 void add_objects(const hdf5::File& file, const std::string& group, int depth,
                  std::vector<std::string>& paths) {
   constexpr int kDeepest = 8;
@@ -83,8 +83,8 @@ std::string name_of_attribute(hid_t object, std::size_t place) {
   return name;
 }
 
-/// Gives one attribute of an object the type and values of the attribute of `other` with its name, removes
-/// the attribute if `other` has no such attribute, or changes the attribute's bytes.
+/// Gives one attribute of an object the type and values of the attribute of that name in `other`, removes it
+/// if `other` has no such attribute, or changes its bytes.
 void change_attribute(hid_t object, hid_t other, Choice& choice) {
   const auto count = static_cast<std::size_t>(std::max(H5Aget_num_attrs(object), 0));
   if (count == 0) return;

@@ -117,7 +117,7 @@ std::optional<std::string> uncompressed_values(std::string_view text, const Stor
   return values;
 }
 
-/// Returns an array with changed values in its encoding; an empty text if the array cannot be decoded.
+/// Returns an array with changed values in the same encoding; empty if the array cannot be decoded.
 std::string changed_array(std::string_view text, const Storage& storage, Choice& choice) {
   constexpr std::size_t kGrowth = 64;
   const bool lies = choice.below(8) == 0;  // about the array's size

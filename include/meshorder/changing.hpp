@@ -40,9 +40,9 @@ struct ReordererOptions {
   /// points alone), and moves nothing if the present numbering is as good.
   std::string method = "auto";
   /// Share, ≥ 0, by which `Update::span_log2` may exceed `Update::fresh_span_log2` before a new order is
-  /// computed. For points alone, the limit is that value + `slack` · log₂ n.
+  /// computed. For points alone, the limit is `fresh_span_log2` + `slack` · log₂ (n + 1).
   double slack = 0.02;
-  /// Seconds, ≥ 0: no new order is computed if the last one took longer.
+  /// Seconds, ≥ 0: no new order is computed if the last computation took longer.
   double budget_seconds = std::numeric_limits<double>::infinity();
   OrderOptions order = {};  ///< options of every order; `groups`, `cell_groups` and `start` must be empty
 };
@@ -51,7 +51,7 @@ struct ReordererOptions {
 struct Update {
   Permutation permutation;  ///< moves rows from their present places; identity under `Repair::none`
   Repair repair = Repair::none;
-  std::string reason = {};  ///< why a new order was computed or not, a sentence
+  std::string reason = {};  ///< a sentence: why a new order was computed or not
   /// Distance of neighbours in the order: the mean of ⌊log₂ |i − j|⌋ over the edges of one in 16 vertices of
   /// a graph, or one in 16 cells of a mesh. For points alone, the mean of log₂ (1 + distance of a point from
   /// its place on the curve) over a sample. Compare only values of the same method.
@@ -60,7 +60,7 @@ struct Update {
   Index added = 0;             ///< vertices that are new
   Index removed = 0;           ///< vertices that are gone
   double seconds = 0;          ///< wall-clock time of the call
-  bool complete = true;  ///< false: `budget_seconds` or the time limit ended the search for a better order
+  bool complete = true;        ///< false: the budget prevented or the time limit ended a search for an order
   std::vector<std::string> notes = {};  ///< as in `Order`
 };
 
@@ -71,8 +71,8 @@ struct Update {
 /// of the rows, and move nothing. A new order is computed when neighbours are too far apart, and as a test
 /// after some updates: 10 at first, twice as many after each test that finds no better order.
 ///
-/// For elements, call `order_elements` with the method `max` after every change of connectivity; this saves
-/// time from the first step on.
+/// To order the elements, call `order_elements` with the method `max` after every change of connectivity:
+/// this saves time from the first step on.
 ///
 /// @note One update at a time. Without `budget_seconds`, `Run::time_limit` and `observe`, equal calls give
 ///       equal orders on any number of threads. Memory: a few numbers; for Fiedler orders 8 n bytes
@@ -114,7 +114,7 @@ class MESHORDER_API Reorderer {
   /// computed once slower steps have lost more time than the order costs: √(2 cost / slope) steps after the
   /// last new order, where `slope` is the growth of the duration from one step to the next. Optional.
   ///
-  /// @param step_seconds  ≥ 0 and finite
+  /// @param step_seconds  the duration, ≥ 0 and finite
   /// @throws InvalidArgument for other durations
   void observe(double step_seconds);
 

@@ -21,16 +21,17 @@ inline namespace v0_3 {
 struct RankMesh {
   std::int64_t vertex_count = 0;                    ///< vertices that this rank owns
   std::span<const std::int64_t> cell_offsets = {};  ///< elements + 1, ascending from 0; none: no elements
-  /// Numbers of the elements' vertices, own or of other ranks.
+  /// The vertices of each element, one element after another; any rank may own them.
   std::span<const std::int64_t> cell_vertices = {};
   std::span<const double> points = {};  ///< x y z of each own vertex, also in 2D; or none on all ranks
 };
 
 /// Options of a call. All but `threads` must be the same on all ranks.
 struct RankOptions {
-  std::string method = "spectral";  ///< orders each rank or part, see `vertex_methods`
+  std::string method = "spectral";  ///< orders each rank or part; see `vertex_methods`
   /// How `order_parts` makes the parts: "ptscotch", "hilbert", "rsb" (recursive spectral bisection), or
-  /// "order" (equal ranges of one order of the whole mesh, by the method "fiedler" only).
+  /// "order": equal ranges of one order of the whole mesh. "order" needs the method "fiedler" and the balance
+  /// "vertices", and excludes `interface_last`.
   std::string partition = "ptscotch";
   std::string balance = "vertices";  ///< for `order_parts`: parts get equally many "vertices" or "cells"
   std::uint64_t seed = 0;
@@ -83,7 +84,7 @@ inline mo_mpi_options to_c(const RankOptions& options) {
           .reserved = 0};
 }
 
-/// Returns the count, or 0 if it is negative; the library then throws on all ranks.
+/// Returns the count; 0 for a negative count, for which the library throws on all ranks.
 inline std::size_t room_for(std::int64_t count) { return count > 0 ? static_cast<std::size_t>(count) : 0; }
 
 inline void throw_unless_ok(mo_status status) {
@@ -92,12 +93,12 @@ inline void throw_unless_ok(mo_status status) {
 
 }  // namespace detail
 
-/// Orders the vertices of every rank among themselves: each stays with its owner. A rank's order begins near
+/// Orders each rank's vertices among themselves: vertices stay with their owners. A rank's order begins near
 /// the rank before it and ends near the rank after it, as far as possible. All ranks must call this function.
 ///
-/// @param communicator  of the ranks that share the mesh
-/// @param mesh          of this rank. An element may be on several ranks (ghost layers); each rank orders all
-///                      elements that it has
+/// @param communicator  the ranks that share the mesh
+/// @param mesh          this rank's share. An element may be on several ranks (ghost layers); each rank
+///                      orders all elements that it has
 /// @param options       the same on all ranks; `parts`, `partition` and `balance` are not used
 /// @throws Error on all ranks if one fails, such as for an unknown method, for options that differ between
 ///         ranks, for vertex numbers that do not exist, or for a geometric method without coordinates
@@ -118,8 +119,8 @@ inline RankOrder order_ranks(MPI_Comm communicator, const RankMesh& mesh, const 
 /// parts get nearby numbers. The caller has to move vertices and elements to their new owners. All ranks must
 /// call this function.
 ///
-/// @param communicator  of the ranks that share the mesh
-/// @param mesh          of this rank, with coordinates; each element on one rank
+/// @param communicator  the ranks that share the mesh
+/// @param mesh          this rank's share, with coordinates; each element must be on exactly one rank
 /// @param options       the same on all ranks
 /// @throws Error as `order_ranks`, and for more parts than vertices
 /// @note PT-Scotch needs MPI_THREAD_MULTIPLE; without it "hilbert" makes the parts.

@@ -3,7 +3,7 @@
 
 /// @file
 /// Meshes and matrices of Eigen in libigl's layout: V with a row for each vertex, F with a row for each cell,
-/// in either storage order. Header only; the program that includes it provides Eigen 3.4.
+/// in either storage order. Header only; the program that includes this header provides Eigen 3.4.
 
 #include <meshorder/error.hpp>
 #include <meshorder/order.hpp>
@@ -22,8 +22,8 @@ inline namespace v0_3 {
 
 /// Returns a view of the rows of a matrix as points.
 ///
-/// @param points  n × 1, 2 or 3 of float or double: a matrix, map or block, not an unevaluated expression. It
-///                must live as long as the view is used
+/// @param points  n × 1, 2 or 3 of float or double: a matrix, map or block, not an unevaluated expression.
+///                Must live as long as the view is used
 /// @throws InvalidArgument for another number of columns: transpose a matrix that has a column per point
 template <class Derived>
 [[nodiscard]] PointsView points_view(const Eigen::DenseBase<Derived>& points MESHORDER_LIFETIMEBOUND) {
@@ -41,7 +41,7 @@ template <class Derived>
 
 /// Returns a view of the pattern of a matrix.
 ///
-/// @param matrix  n × n, compressed, of either storage order. It must live as long as the view is used
+/// @param matrix  n × n, compressed, of either storage order; must live as long as the view is used
 /// @throws InvalidArgument for a matrix that is not square, or not compressed: call its makeCompressed()
 template <class Scalar, int Options, class StorageIndex>
 [[nodiscard]] GraphView graph_view(
@@ -101,7 +101,7 @@ Shape shape_by_columns(const Eigen::DenseBase<V>& points, const Eigen::DenseBase
 /// @param cells    F: m × k integers from 0, a row for each cell
 /// @param shape    of every cell; a `Shape`
 /// @param methods  names of the two methods
-/// @param options  as of `order_mesh`
+/// @param options  as for `order_mesh` of a `MeshView`
 /// @throws as `order_mesh` and `points_view`
 /// @note Cost of `order_mesh`, and a copy of the cells.
 template <class V, class F, std::same_as<Shape> S>
@@ -115,8 +115,8 @@ template <class V, class F, std::same_as<Shape> S>
                     methods, options);
 }
 
-/// The same with the shape from the number of F's columns: 2 for lines, 3 for triangles, 4 for tetrahedra.
-/// Four columns are quads if V has fewer than three columns. For quads in space, name the shape.
+/// The same; the number of F's columns implies the shape: 2 columns are lines, 3 triangles, 4 tetrahedra, or
+/// quads if V has fewer than three columns. For quads in space, name the shape.
 ///
 /// @throws InvalidArgument also for other numbers of columns: name the shape, or transpose an F that has a
 ///         column per cell
@@ -177,7 +177,7 @@ void renumber(const Permutation& vertices, Eigen::PlainObjectBase<Derived>& cell
 }
 
 /// Orders a mesh and moves V and F. Returns the order, by which `move_rows` moves all other values of
-/// vertices and cells. Parameters, exceptions and cost as of `order_mesh`.
+/// vertices and cells. Parameters, exceptions and cost are those of `order_mesh`.
 template <class V, class F, std::same_as<Shape> S>
 MeshOrder reorder(Eigen::PlainObjectBase<V>& points, Eigen::PlainObjectBase<F>& cells, S shape,
                   const MeshMethods& methods = {}, const OrderOptions& options = {}) {
@@ -188,7 +188,7 @@ MeshOrder reorder(Eigen::PlainObjectBase<V>& points, Eigen::PlainObjectBase<F>& 
   return order;
 }
 
-/// The same with the shape from the number of F's columns, as for `order_mesh`.
+/// The same; the number of F's columns implies the shape, as for `order_mesh`.
 template <class V, class F>
 MeshOrder reorder(Eigen::PlainObjectBase<V>& points, Eigen::PlainObjectBase<F>& cells,
                   const MeshMethods& methods = {}, const OrderOptions& options = {}) {

@@ -59,7 +59,7 @@ struct Location {
 class MESHORDER_API InputError : public Error {
  public:
   /// @param location  where the fault is
-  /// @param what      the fault; may quote names from the file: `what()` escapes the line ends in them
+  /// @param what      the fault; may quote names from the file: `what()` escapes control characters
   /// @param remedy    what would be right; may be empty
   InputError(Location location, const std::string& what, const std::string& remedy);
 
@@ -74,7 +74,7 @@ class MESHORDER_API InputError : public Error {
   std::shared_ptr<const Location> location_;  // shared: copying an exception must not throw
 };
 
-/// Thrown for 2³¹ or more vertices, cells or degrees of freedom, or entries if METIS has 32-bit integers; for
+/// Thrown for 2³¹ or more vertices, cells, degrees of freedom or (if METIS has 32-bit integers) entries; for
 /// a result that the caller's integer type cannot hold; for a graph beyond the memory limit.
 struct MESHORDER_API TooLarge : Error {
   explicit TooLarge(const std::string& message) : Error(Code::too_large, message) {}

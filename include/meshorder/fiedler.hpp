@@ -29,9 +29,9 @@ struct Fiedler {
   /// least half the component's largest magnitude is negative.
   std::vector<double> values;
   std::vector<FiedlerComponent> components;  ///< largest first, ties by their smallest vertex
-  std::vector<Index> component_of;           ///< n entries: position in `components`
+  std::vector<Index> component_of;           ///< n entries: the component's index in `components`
   bool complete = true;                      ///< false: `Run::time_limit` ended the iteration
-  std::vector<std::string> notes;            ///< what was cleaned: "12 loops dropped"
+  std::vector<std::string> notes;            ///< what was cleaned, such as "12 loops dropped"
 };
 
 /// Computes the Fiedler vector of every connected component.
@@ -46,8 +46,8 @@ struct Fiedler {
 ///                 default tolerance of 0.1 suffices for an order; use 1e-8 if the values themselves matter
 /// @return the vectors, and a report for each component. A component that does not converge keeps its best
 ///         vector, with `converged` false; that is not an error
-/// @throws InvalidArgument if `check` refuses the graph, or if `start` has a size other than 0 and n or an
-///         entry that is not finite
+/// @throws InvalidArgument if `check` refuses the graph, if an option or the ratio of weights is out of
+///         range, or if `start` has a size other than 0 and n or an entry that is not finite
 /// @throws TooLarge for more than 2,147,483,647 vertices
 /// @throws Stopped if the progress callback returned false
 /// @note O((n + edges) · iterations), about six iterations on meshes; memory about 3.5 times the graph's. The

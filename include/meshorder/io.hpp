@@ -25,7 +25,7 @@ using Notes = std::vector<std::string>;
 
 /// Description of a file format.
 struct FormatInfo {
-  std::string name = {};                     ///< as in `ReadOptions::format`: "gmsh", "vtu"
+  std::string name = {};                     ///< such as "gmsh"; the name for `ReadOptions::format`
   std::vector<std::string> extensions = {};  ///< lower case, with the dot
   bool single_file = true;                   ///< false for formats of several files (TetGen)
   bool groups_cells_by_type = false;         ///< the file keeps cells of one type together
@@ -36,19 +36,20 @@ struct FormatInfo {
 
 /// Options of `read_mesh`.
 struct ReadOptions {
-  std::string format = {};  ///< name of the format; empty: by the extension, or in memory by the first bytes
-  std::string name = {};  ///< name of bytes or a stream in messages; its extension does not choose the format
+  /// Name of the format. Empty: the extension decides; for bytes and streams, the first bytes.
+  std::string format = {};
+  std::string name = {};  ///< what messages call bytes or a stream; its extension does not choose the format
   /// For formats of several files in memory: returns the bytes of the file of that name; an empty string if
   /// there is no such file. An exception passes through.
   std::function<std::string(std::string_view name)> companion = {};
   Notes* notes = nullptr;  ///< receives warnings; null: they are dropped
   Run run = {};            ///< `threads`; readers report no progress
-  /// Limit in bytes on memory for data that is larger than in the files: compressed or repeated values, sizes
+  /// Limit, in bytes, on memory for data that files hold in fewer bytes: compressed or repeated values, sizes
   /// without values, ranges of numbers. If not set: 256 MiB plus 100 times the size of the mesh's files, but
   /// at most three quarters of the memory that this process may have.
   std::optional<std::uint64_t> memory_limit = {};
-  /// Folders, besides the file's own, that may hold the other files that the file names. Links are resolved
-  /// first.
+  /// Folders in which files that the mesh's file names may lie, besides the folder of that file. Links are
+  /// resolved first.
   std::vector<std::filesystem::path> include_folders = {};
 };
 
@@ -61,8 +62,9 @@ struct ReadOptions {
 /// @param options  see `ReadOptions`
 /// @return a mesh that `check_mesh` accepts, with at least one cell
 /// @throws InputError for a file that is missing, faulty or without cells, with place and remedy; for more
-///         than 2,147,483,647 vertices or cells; for data that exceed `options.memory_limit`; for names of
-///         files in other folders; for an unknown extension (the message lists the known ones)
+///         than 2,147,483,647 vertices or cells; for data that exceed `options.memory_limit`; if the file
+///         names files in folders that are not allowed; for an unknown extension (the message lists the known
+///         ones)
 /// @throws InvalidArgument for an unknown format (the message lists the known ones)
 /// @throws Unavailable for a format or a compression whose library this build lacks
 [[nodiscard]] MESHORDER_API Mesh read_mesh(const std::filesystem::path& path,
@@ -83,9 +85,9 @@ struct KeepOptions {
 };
 
 /// Removes cells from a mesh: first the cells whose dimension is not the wanted one, then the cells that the
-/// format cannot hold. The latter all stay if one has the highest dimension (`write_mesh` refuses such a
-/// mesh). Call this function before `reorder`: the permutations then describe the file that `write_mesh`
-/// makes.
+/// format cannot hold. If one of the latter has the highest dimension, all of them stay (`write_mesh` refuses
+/// such a mesh). Call this function before `reorder`: the permutations then describe the file that
+/// `write_mesh` makes.
 ///
 /// All vertices stay. Arrays, sets, ids and blocks follow the cells. A set, or an array on only some cells,
 /// is removed if none of its cells is left; `notes` names it.
@@ -109,7 +111,7 @@ struct WriteOptions {
 /// Cells that the format cannot hold are left out, as by `keep_cells`.
 ///
 /// @param mesh   not changed
-/// @param path   replaced once everything is written and on the disk; an exception leaves no file behind.
+/// @param path   replaced once all bytes are on the disk; an exception leaves no unfinished file.
 ///               Symbolic links are followed in `path` itself, not in names derived from it. Owner, mode and
 ///               ACLs are kept as far as the system allows. Other hard links keep the old content; `notes`
 ///               reports that. Devices and pipes are written directly

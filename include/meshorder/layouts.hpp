@@ -40,8 +40,8 @@ struct Patches {
   [[nodiscard]] std::span<const Index> vertices_of(std::size_t patch) const&& = delete;
 };
 
-/// Cuts cells into patches of `size`, in their order. Within a patch, neighbouring cells are spread over the
-/// warps of 32 threads, so that few threads of a warp add to the same vertex in shared memory.
+/// Cuts cells into patches of `size` consecutive cells. Within a patch, neighbouring cells are spread over
+/// the warps of 32 threads, so that few threads of a warp add to the same vertex in shared memory.
 ///
 /// @param cells         cells with the same number of vertices k; edges are lines
 /// @param vertex_count  n
@@ -55,11 +55,12 @@ struct Patches {
                                             const Run& run = {});
 
 /// The cells at each vertex. Instead of adding to vertices, a first pass stores the contribution of each cell
-/// to each corner, and a second one sums them for each vertex. No two threads write to the same place.
+/// to each corner, and a second pass sums the contributions to each vertex. No two threads write to the same
+/// place.
 struct GatherLists {
   std::vector<Offset> offsets{0};          ///< n + 1: where the entries of each vertex begin
   std::vector<Index> cells = {};           ///< the cells of each vertex, ascending
-  std::vector<std::uint8_t> corners = {};  ///< position of the vertex in that cell
+  std::vector<std::uint8_t> corners = {};  ///< position of the vertex in each of these cells
 };
 
 /// Returns the gather lists of cells, which may be of several types, with at most 256 vertices each.
@@ -98,7 +99,7 @@ struct Colours {
 [[nodiscard]] MESHORDER_API std::vector<Index> sort_corners(const CellsView& cells, std::size_t vertex_count,
                                                             const Run& run = {});
 
-/// How a kernel stores the values of vertices, of 4 bytes each: those that it reads for its cells, and those
+/// How a kernel stores the 4-byte values of vertices: the values that it reads for its cells, and the values
 /// that it adds to. `patches` and `gathered` have the three values of a vertex side by side.
 enum class GpuLayout {
   packed,   ///< the three values of a vertex side by side, each added separately
@@ -118,14 +119,14 @@ MESHORDER_API std::string_view to_string(GpuLayout layout);
 /// Returns the layout of that name; throws InvalidArgument for an unknown one.
 MESHORDER_API GpuLayout parse_gpu_layout(std::string_view name);
 
-/// Size of the last cache of an NVIDIA H100, bytes.
+/// Bytes of the last cache of an NVIDIA H100.
 inline constexpr std::size_t kGpuCacheBytes = std::size_t{50} << 20;
 
 /// Cost of a kernel on a graphics processor.
 struct GpuCost {
   Offset requests = 0;  ///< additions, or loads and stores; one request serves the 32 threads of a warp
   /// 32-byte sectors that these requests touch. If t threads of a warp add to the same value, they wait for
-  /// each other, and the sector counts t times, for its largest t.
+  /// each other: the sector counts t times, with the largest t of its values.
   Offset sectors = 0;
   /// What `sectors` would be if the values that each warp touches at once were all different and side by side
   /// and, for patches, no vertex were in two patches.

@@ -22,7 +22,7 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// Cells of any types, mixed, in file order: cell c has shape `shapes[c]` and the vertices
+/// Cells of any mixture of types, in file order: cell c has shape `shapes[c]` and the vertices
 /// `vertices[offsets[c]] … vertices[offsets[c + 1] − 1]`.
 ///
 /// Corners come first, in VTK's order, except in linear wedges. The first triangle of every wedge faces
@@ -73,8 +73,8 @@ using Values = std::variant<std::vector<double>, std::vector<float>, std::vector
                             std::vector<std::int32_t>, std::vector<std::uint32_t>, std::vector<std::int64_t>,
                             std::vector<std::uint64_t>, std::vector<std::string>>;
 
-/// Name of the array of integer labels, one for each vertex or cell. Formats translate their own labels to
-/// and from it: Medit's references, TetGen's boundary markers, the first physical group of Gmsh.
+/// Name of the array of integer labels, one for each vertex or cell. Formats convert this array to and from
+/// their own labels: Medit's references, TetGen's boundary markers, the first physical group of Gmsh.
 inline constexpr std::string_view kLabel = "label";
 
 /// Values of vertices or cells: rows of `components` values, one row after another.
@@ -162,8 +162,8 @@ const DataArray* find_array(const Mesh&& mesh, std::string_view name, Associatio
 
 /// Checks that the members of a mesh are consistent: coordinates are finite; offsets ascend; every cell has a
 /// known shape, at least the corners of that shape, and vertices that exist; every array has a row for each
-/// vertex or cell, or for each of its indices, which exist; members of sets exist; all vertices or cells have
-/// an id, or none; blocks ascend.
+/// vertex or cell, or for each of its indices, which exist; members of sets exist; all vertices have ids, or
+/// none has, and likewise all cells; blocks ascend.
 ///
 /// @throws InvalidArgument for the first fault, which the message names
 /// @note O(size of the mesh).
@@ -187,11 +187,11 @@ inline constexpr std::string_view kOriginal = "original";
 /// How ids of vertices and cells change. An order that moves no vertex leaves the ids of vertices as they
 /// are; likewise for cells.
 enum class Ids : std::uint8_t {
-  /// The old ids, assigned again in ascending order, for cells within each dimension of each block. An Abaqus
-  /// deck with unknown cards keeps its ids, because these cards may refer to the ids.
+  /// The old ids, assigned again in ascending order; for cells, within each dimension of each block. Decks of
+  /// Abaqus with unknown cards keep their ids, because these cards may refer to the ids.
   renumber,
   keep,    ///< every vertex and cell keeps its id, so that references from other files stay valid
-  attach,  ///< as `renumber`; the arrays `kOriginal` hold the old ids, or old positions from 0
+  attach,  ///< as `renumber`; the arrays `kOriginal` hold the old ids or, without ids, positions from 0
 };
 
 /// Options of `reorder`.
@@ -222,7 +222,7 @@ struct ReorderOptions {
 ///       at a time.
 MESHORDER_API MeshOrder reorder(Mesh& mesh, const ReorderOptions& options = {});
 
-/// Moves the vertices and cells of a mesh to given places with all their data: cells name the renumbered
+/// Moves the vertices and cells of a mesh, with all their data, to given places: cells name the renumbered
 /// vertices; arrays and sets follow their vertices and cells.
 ///
 /// @param mesh      changed in place; unchanged after an exception other than std::bad_alloc

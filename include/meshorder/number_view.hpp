@@ -12,8 +12,7 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// Number of a vertex, a cell, or a row of a matrix inside meshorder. There are at most 2,147,483,647 of
-/// each.
+/// Type that meshorder uses to number vertices, cells and rows of matrices: at most 2,147,483,647 of each.
 using Index = std::int32_t;
 
 /// Position in an array with several entries for each vertex or cell; also a distance in bytes.

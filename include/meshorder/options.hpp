@@ -55,24 +55,24 @@ enum class Check : std::uint8_t {
 
 /// What to do with an asymmetric pattern.
 enum class Symmetry : std::uint8_t {
-  require,  ///< refuse it with InvalidArgument, if `Check` tests for it
+  require,  ///< refuse the pattern with InvalidArgument if `Check` tests symmetry
   mirror,   ///< order A + Aᵀ, with the weights of (A + Aᵀ) / 2
 };
 
 /// State of a running call.
 struct Progress {
   /// The present stage: "check", "graph", "coarsen", "eigenvector", "improve", "sort", "move", or "metis".
-  /// While METIS runs, no callback comes and the call cannot be stopped. These words are stable; more may
-  /// come. Valid during the callback.
+  /// While METIS runs, no callback comes and the call cannot be stopped. These words do not change; new ones
+  /// may be added. Valid during the callback.
   std::string_view stage;
   double fraction = -1;  ///< share of the whole call that is done, 0 … 1, never decreasing; −1 if unknown
-  double seconds = 0;    ///< since the call began
+  double seconds = 0;    ///< time since the call began
 };
 
 /// How a call runs. Only `time_limit` can change a result; the other members leave every bit the same.
 struct Run {
   /// Largest number of threads, ≥ 0; 0: as many as the caller's TBB arena has. The call runs in an arena of
-  /// its own; 1 starts no thread. A limit set by tbb::global_control holds as well.
+  /// its own; with 1, no thread is started. A limit set by tbb::global_control holds as well.
   int threads = 0;
 
   /// Called now and then on the calling thread, never twice at once and with no lock held.

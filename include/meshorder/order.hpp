@@ -35,7 +35,7 @@ struct Order {
   std::vector<double> vector = {};
   bool complete = true;  ///< false: `Run::time_limit` ended the method early
   double seconds = 0;    ///< wall-clock time of the call
-  /// What was changed in a copy of the input ("12 loops dropped", "indices narrowed") or looks wrong.
+  /// What was changed in a copy of the input ("12 loops dropped"), and what looks wrong in the input.
   std::vector<std::string> notes = {};
 };
 
@@ -65,7 +65,8 @@ struct MeshMethods {
 /// @param points   n points for geometric methods (hilbert, morton); n or none for others, of which only
 ///                 `auto` and registered methods use the points
 /// @throws InvalidArgument for an unknown method (the message lists the known ones), for a geometric method
-///         without coordinates, for sizes that do not match, and for what `check` refuses
+///         without coordinates, for sizes that do not match or options out of range, and for what `check`
+///         refuses
 /// @throws TooLarge for more than 2,147,483,647 vertices, or for more entries than METIS's integers can count
 /// @throws Unavailable for a method that this build lacks
 /// @throws Stopped if the progress callback returned false
@@ -192,14 +193,14 @@ class MESHORDER_API Graph {
 [[nodiscard]] MESHORDER_API Graph vertex_graph(const CellsView& cells, std::size_t vertex_count,
                                                const Run& run = {});
 
-/// Builds the graph that joins any two elements that share a facet or a vertex.
+/// Builds the graph that joins elements that share a facet, or elements that share a vertex.
 ///
 /// @param cells         the cells; vertex e of the graph is the e-th cell of the highest dimension
 /// @param vertex_count  number of the mesh's vertices
 /// @param by_facet      true: join elements that share a face (volumes), an edge (surfaces) or an end
 ///                      (lines). If more than two elements share a facet, each is joined to the next. A
 ///                      polyhedron is joined to the elements that have three of its vertices. false: join
-///                      those that share a vertex, about 50 neighbours for a tetrahedron
+///                      elements that share a vertex, about 50 neighbours for a tetrahedron
 /// @param run           threads, progress
 /// @throws as `vertex_graph`; InvalidArgument for `by_facet` with cells of unknown shape
 /// @note By facet O(facets · log facets at a vertex), by vertex O(Σ (elements at a vertex)²).
@@ -222,13 +223,13 @@ class MESHORDER_API Graph {
 /// Checks that a graph is what the functions of this library accept: see `Check`. Loops, repeats and unsorted
 /// rows pass.
 ///
-/// @param graph  a graph of any content, in arrays as long as the views
+/// @param graph  its arrays may hold any numbers, but must be as long as the views
 /// @param level  what to check
 /// @throws InvalidArgument for the first fault; the message names the row, the entry and the fault
 /// @throws TooLarge for more than 2,147,483,647 vertices
 /// @note O(n + entries) time, on all threads. No memory for int64 offsets and int32 neighbours; for other
-///       types as `order_vertices`. If the first test of symmetry fails, a slower second one compares the
-///       rows, or a sorted copy of them.
+///       types as `order_vertices`. If the hash test of symmetry fails, a slower test compares the rows,
+///       or a sorted copy of the rows.
 MESHORDER_API void check(const GraphView& graph, Check level = Check::full);
 
 }  // namespace v0_3

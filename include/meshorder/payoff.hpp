@@ -81,17 +81,17 @@ struct Candidate {
 
 /// The best candidate for one kernel.
 struct KernelAdvice {
-  std::size_t candidate = 0;  ///< place in `Advice::candidates` of the order in which the kernel is fastest
-  double factor = 1;          ///< present time / time in that candidate; 1 if nothing is gained
+  std::size_t candidate = 0;  ///< index in `Advice::candidates` of the kernel's fastest candidate
+  double factor = 1;          ///< present time / time in that candidate's order; 1 if nothing is gained
   double runs_to_pay = 0;  ///< runs after which the saved time equals `order_seconds`; 0 if nothing is gained
 };
 
 /// The gain that reordering a mesh would bring.
 struct Advice {
   Candidate as_is = {};                    ///< the order that the mesh has
-  std::vector<Candidate> candidates = {};  ///< those of `PayoffOptions::methods`, in that order
+  std::vector<Candidate> candidates = {};  ///< as `PayoffOptions::methods` lists them
   std::array<KernelAdvice, kKernels.size()> kernels = {};
-  /// Reason not to trust the measured times, a sentence: the machine was busy or throttled. Empty if they are
+  /// A sentence: why not to trust the measured times (the machine was busy or throttled). Empty if they are
   /// reliable, or if nothing was measured.
   std::string doubt = {};
   /// The machine of the predicted times: "this machine, calibrated 2026-11-22", a machine's name, or
@@ -102,8 +102,8 @@ struct Advice {
   std::array<double, kKernels.size()> floor = {};
   int threads = 1;                          ///< threads that shared each run
   KernelSet kernel_set = KernelSet::plain;  ///< the kernels that were timed
-  /// Whether the input is a matrix or graph, or a mesh from a file of one. Then spmv is the product with that
-  /// matrix, the times of the other kernels are 0, and one product counts in place of a time step.
+  /// Whether the input is a matrix or graph, or a mesh whose file holds one. Then spmv is the product with
+  /// that matrix, the times of the other kernels are 0, and one product counts in place of a time step.
   bool is_matrix = false;
 };
 
@@ -117,12 +117,12 @@ struct PayoffOptions {
   /// The candidates; empty: the choice of `auto` for all kernels and, if it differs, the choice of `auto` for
   /// springs.
   std::vector<MeshMethods> methods = {};
-  bool predict = true;  ///< gives the same times on every run
+  bool predict = true;  ///< predict times; every run gives the same
   /// The machine to predict for: one whose costs are part of the library ("zen3"), or "this": the stored
   /// calibration of this machine or, if there is none, this machine's caches with the costs of "zen3". Empty:
   /// the value of the environment variable MESHORDER_MACHINE, or "this" if that is not set.
   std::string machine = {};
-  bool measure = false;                  ///< runs the kernels here
+  bool measure = false;                  ///< time the kernels on this machine
   KernelSet kernels = KernelSet::plain;  ///< only plain kernels can be predicted
   /// Time the kernels on all threads, which share each run, instead of one thread. Prediction then needs a
   /// calibration of this machine on the same number of threads; the shipped costs are for one thread.
@@ -139,7 +139,7 @@ struct PayoffOptions {
 /// @param options  see `PayoffOptions`
 /// @return the kernels' times in the present order and in every candidate, and the best candidate for each
 ///         kernel. Times count as equal if they differ by less than `Advice::floor`, or by less than 5 %. For
-///         times predicted by shipped costs the second limit is 10 %, for products 25 %
+///         times predicted from shipped costs, the 5 % become 10 %, for products 25 %
 /// @throws as `order_mesh`; InvalidArgument also for a mesh without such cells, unknown types and machines, a
 ///         negative budget, `Workload::gpu`, neither `predict` nor `measure`, `predict` with tuned kernels,
 ///         and `predict` with `all_threads` if the machine's costs on that number of threads are not known
@@ -181,7 +181,7 @@ struct CalibrationReport {
   std::string machine = {};  ///< the value of `Advice::machine` for this calibration
   std::string json = {};     ///< all that was measured, see docs/json.md
   std::string file = {};     ///< the file that stores the calibration; empty if it is not kept
-  /// Reason not to trust the calibration, a sentence: the machine was busy or throttled. Empty if it is
+  /// A sentence: why not to trust the calibration (the machine was busy or throttled). Empty if it is
   /// reliable.
   std::string doubt = {};
 };

@@ -39,7 +39,7 @@ class MESHORDER_API Permutation {
   /// @throws InvalidArgument if n is negative
   static Permutation identity(Index n);
 
-  /// Makes a permutation from a map of old to new places: `map[i]` is the new place of old i.
+  /// Makes a permutation from a map of old to new places: `map[i]` is the new place of old item i.
   ///
   /// @throws InvalidArgument if the map is not a bijection of 0 … n−1; the message names the first faulty
   ///         entries
@@ -51,8 +51,8 @@ class MESHORDER_API Permutation {
     return from_old_to_new(std::vector<Index>(map));
   }
 
-  /// Makes a permutation from a map of new to old places: `map[k]` is the old place of new k, so that the map
-  /// lists the old items in their new order. Throws and costs as `from_old_to_new`.
+  /// Makes a permutation from a map of new to old places: `map[k]` is the old place of the item at new place
+  /// k. The map thus lists the old items in their new order. Throws and costs as `from_old_to_new`.
   static Permutation from_new_to_old(IndexView map);
   static Permutation from_new_to_old(std::vector<Index>&& map);  ///< the same without a copy of the map
   static Permutation from_new_to_old(std::initializer_list<Index> map) {  ///< the same for a list in braces
@@ -83,8 +83,8 @@ class MESHORDER_API Permutation {
   [[nodiscard]] Permutation inverse() const&;
   [[nodiscard]] Permutation inverse() && noexcept;
 
-  /// Returns this permutation followed by `next`: the result's old_to_new is next.old_to_new[old_to_new[i]].
-  /// O(n).
+  /// Returns this permutation followed by `next`: the result's old_to_new[i] is
+  /// next.old_to_new[old_to_new[i]]. O(n).
   ///
   /// @throws InvalidArgument if the sizes differ
   [[nodiscard]] Permutation then(const Permutation& next) const;
@@ -152,7 +152,7 @@ class MESHORDER_API Permutation {
   /// @param matrix   A: n rows; its weights are ignored; B has the same base
   /// @param values   the same number of bytes for each entry of A, one after another; may be empty
   /// @param offsets  n + 1 offsets of B, written
-  /// @param columns  as many columns of B as of A, written
+  /// @param columns  columns of B's entries, as many as A has entries, written
   /// @param moved    as many bytes as `values`, written; no output may overlap another array
   /// @throws InvalidArgument if sizes do not match, A is faulty or an output overlaps another array
   /// @throws TooLarge if an output type cannot hold its numbers
@@ -162,8 +162,9 @@ class MESHORDER_API Permutation {
   void move_csr(const GraphView& matrix, std::span<const std::byte> values, IndexSpan offsets,
                 IndexSpan columns, std::span<std::byte> moved) const;
 
-  /// Returns the source of each entry of B (see `move_csr`): entry k of B is entry map[k] of A, from 0. For
-  /// matrices whose values change while the pattern stays. Throws and costs as `move_csr`; 8 bytes an entry.
+  /// Returns a map from the entries of B (see `move_csr`) to those of A, both counted from 0: entry k of B is
+  /// entry map[k] of A. For matrices whose values change while the pattern stays. Throws and costs as
+  /// `move_csr`; 8 bytes an entry.
   [[nodiscard]] std::vector<Offset> csr_entry_map(const GraphView& matrix) const;
 
   bool operator==(const Permutation&) const = default;

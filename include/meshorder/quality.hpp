@@ -23,16 +23,16 @@ struct Quality {
   Index bandwidth = 0;  ///< the largest span: the half bandwidth of the matrix with this pattern
   Offset profile = 0;  ///< Σ over rows: diagonal − column of the first entry, if that is before the diagonal
   std::vector<Offset> histogram_log2 = {};  ///< entry k: the number of edges with span in [2ᵏ, 2ᵏ⁺¹)
-  /// Share, 0 … 1, of jumps. In a product with the matrix, the vector is read by cache lines of 8 entries.
-  /// The first read of a line is a jump unless one of the three lines before it in memory was first read
-  /// within the last 32 first reads. If vectors exceed the last cache, this share explains the times of plain
+  /// A product with the matrix reads the vector by cache lines of 8 entries. This is the share, 0 … 1, of the
+  /// lines whose first read is a jump: none of the three lines before the line in memory was first read
+  /// within the last 32 first reads. If vectors exceed the last cache, the share explains the times of plain
   /// products and springs.
   double jump_share = 0;
 
   bool operator==(const Quality&) const = default;
 };
 
-/// The number of entries of a matrix in each of side × side tiles, rows from the top.
+/// The number of entries of a matrix in each of side × side tiles, rows of tiles from the top.
 struct SparsityPattern {
   int side = 0;
   std::vector<std::uint32_t> counts = {};  ///< side · side, row after row
@@ -77,7 +77,7 @@ MESHORDER_API std::vector<Offset> span_histogram(const GraphView& graph, const P
 ///
 /// @param graph     n vertices
 /// @param order     n places
-/// @param side      tiles along each side, ≥ 1; n if that is less
+/// @param side      tiles along each side, ≥ 1; n if n is less
 /// @param run       threads, progress
 /// @param symmetry  as `quality`
 /// @throws InvalidArgument as `quality`, and if side < 1

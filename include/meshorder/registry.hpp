@@ -22,7 +22,7 @@ inline namespace v0_3 {
 struct MethodInfo {
   std::string name = {};         ///< lower case letters, digits, '-' and '_'; unique
   std::string description = {};  ///< one line
-  bool needs_points = false;     ///< throws InvalidArgument without coordinates
+  bool needs_points = false;     ///< a call without coordinates throws InvalidArgument
   bool deterministic = true;     ///< the same result on every run and for any number of threads
   std::string source = "built in";
 };
@@ -67,7 +67,7 @@ class [[nodiscard]] MESHORDER_API Registration {
   /// Leaves the method in the list until the program ends.
   void keep() && noexcept { id_ = 0; }
 
-  /// For the registry only: owns the entry of that number, > 0.
+  /// For the registry only: owns the entry with that number, > 0.
   explicit Registration(std::uint64_t id) noexcept : id_(id) {}
 
  private:
@@ -97,7 +97,7 @@ MESHORDER_API Registration register_element_method(MethodInfo info, ElementMetho
 ///
 /// @throws Unavailable if the library cannot be loaded or lacks that function, or if the platform has no
 ///         shared libraries
-/// @throws InvalidArgument if the function returns other than 0
+/// @throws InvalidArgument if that function returns a number other than 0
 /// @warning Runs code of that library.
 MESHORDER_API void load_methods(const std::filesystem::path& shared_library);
 

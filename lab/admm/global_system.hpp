@@ -22,9 +22,9 @@ class GlobalSystem {
   /// Holds these vertices. On the first call, or if other vertices were held, refactors and returns true.
   bool hold(const HeldVertices& held);
 
-  /// Copies the held vertices' positions from x to the right-hand side b, and adds their influence on other
-  /// vertices to b. Vectors have kPaddedStride numbers for each vertex. O(entries in the rows of held
-  /// vertices).
+  /// Adds the held vertices' influence on other vertices to the right-hand side b, then copies the held
+  /// vertices' positions from x to b. Vectors have kPaddedStride numbers for each vertex. O(entries in the
+  /// rows of held vertices).
   void apply_held(std::span<const Real> x, std::span<Real> b) const;
 
   [[nodiscard]] const SparseMatrix& matrix() const noexcept { return matrix_; }
@@ -39,7 +39,7 @@ class GlobalSystem {
     Real value;
   };
 
-  SparseMatrix whole_;  ///< with no vertex held
+  SparseMatrix whole_;  ///< A with no vertex held
   SparseMatrix matrix_;
   std::vector<char> held_;
   std::vector<Index> held_vertices_;

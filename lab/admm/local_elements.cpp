@@ -158,8 +158,8 @@ LocalElements<Real> tetrahedra_of(const LocalLaw& law, const Simplices& simplice
     }
   }
   const auto is_flat = [&](Offset s) { return shapes.volume(s) <= 0.0; };
-  // a flat tetrahedron gets the shape of the last tetrahedron before it that is not flat; without one, of the
-  // first tetrahedron that is not flat
+  // a flat tetrahedron gets the shape of the last earlier tetrahedron that is not flat; if there is none,
+  // that of the first tetrahedron that is not flat
   Offset shape = 0;
   while (shape + 1 < result.count && is_flat(shape)) ++shape;
   for (Offset s = 0; s < lanes; ++s) {

@@ -54,8 +54,8 @@ LocalElements<Real> local_elements(const LocalLaw& law, const Simplices& simplic
 template <class Real>
 SparseMatrix stiffness_of(const LocalElements<Real>& elements, Index n);
 
-/// Returns Σ U(D x) of all elements: see LocalSteps::energy. Runs on all threads, one element at a time, with
-/// the same bits for any number of threads.
+/// Returns Σ U(D x) of all elements: see LocalSteps::energy. Runs on all threads, without batches, with the
+/// same bits for any number of threads.
 template <class Real>
 double energy_of(LocalModel model, const LocalElements<Real>& elements, std::span<const Real> positions);
 

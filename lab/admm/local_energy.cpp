@@ -91,7 +91,7 @@ double energy_of_element(LocalModel model, const LocalElements<Real>& elements, 
     const double stretch = length - static_cast<double>(elements.rest[s]);
     return 0.5 * weight * stretch * stretch;
   }
-  // elements without weight have no energy, not even an infinite one
+  // an element without weight has the energy 0, even where its density is infinite
   if (weight <= 0.0) return 0.0;
   for (Index a = 1; a < 4; ++a) {
     for (int c = 0; c < 3; ++c) {

@@ -9,7 +9,7 @@ namespace meshorder {
 template <class Real>
 inline constexpr Index kLocalBatch = 64 / sizeof(Real);
 
-/// Numbers of a tetrahedron in LocalElements::rest: Dₘ⁻¹ row by row in the frame of the world, and w².
+/// How many numbers a tetrahedron has in LocalElements::rest: Dₘ⁻¹ row by row in the world's frame, and w².
 inline constexpr Index kTetrahedronNumbers = 10;
 
 /// Input and output of a pass over one share of the batches, already checked. Internal to local_steps.cpp and
@@ -18,7 +18,7 @@ template <class Real>
 struct LocalPass {
   const OwnedBatches& share;
   const Index* vertices = nullptr;   ///< corners of each batch
-  const Real* rest = nullptr;        ///< kTetrahedronNumbers, or the rest length of springs
+  const Real* rest = nullptr;        ///< kTetrahedronNumbers quantities; springs: the rest length
   const Real* directions = nullptr;  ///< springs: directions of the rest edges, 3 quantities
   /// Hyperelastic models: μ / bulk modulus; the numbers of batch b begin at softness[softness_stride · b].
   const Real* softness = nullptr;
@@ -29,7 +29,7 @@ struct LocalPass {
   Real* right_hand_side = nullptr;
   // for the batches of the share, one after another
   Real* duals = nullptr;        ///< 9 quantities of tetrahedra, 3 of springs
-  double* residuals = nullptr;  ///< primal and magnitude
+  double* residuals = nullptr;  ///< primal and magnitude of each batch
 };
 
 // The kernels of each law.

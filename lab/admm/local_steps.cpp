@@ -29,7 +29,7 @@ void run(LocalModel model, const LocalPass<Real>& pass) {
   }
 }
 
-/// Returns the bounds of ranges of vertices, each with about as many corners of elements.
+/// Returns the bounds of ranges of vertices with about equal numbers of element corners.
 template <class Real>
 std::vector<Index> ranges_of(const LocalElements<Real>& elements, Index n) {
   std::vector<Offset> corners(static_cast<std::size_t>(n) + 1, 0);

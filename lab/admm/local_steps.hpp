@@ -18,11 +18,11 @@ namespace meshorder {
 /// weight w² of its local step.
 ///
 /// Springs and strain have a single minimum in closed form: halfway to the rest length or to the closest
-/// rotation. If q (see LocalSteps::pass) is 0, it is halfway to the rest edge or to the identity: a body can
-/// unfold from a point. The step of a hyperelastic model is the minimum where the objective is convex (near
-/// rest), and a local minimum elsewhere. Near rest it is accurate to about 1e-13 (floats 2e-6; floats of stvk
-/// 1e-5 at Poisson's ratio 0.3 and 1e-4 at 0). Singular values above 1e4 count as 1e4. Finite q never give
-/// NaN.
+/// rotation. If q (see LocalSteps::pass) is 0, the minimum is halfway to the rest edge or to the identity: a
+/// body can unfold from a point. The step of a hyperelastic model is the minimum where the objective is
+/// convex (near rest), and a local minimum elsewhere. Near rest the step is accurate to about 1e-13 (floats
+/// 2e-6; floats of stvk 1e-5 at Poisson's ratio 0.3 and 1e-4 at 0). Singular values above 1e4 count as 1e4.
+/// Finite q never give NaN.
 enum class LocalModel : std::uint8_t {
   springs,  ///< on every edge: D x = x_a − x_b, U = ½k(‖D x‖ − ℓ₀)², w² = k
   strain,  ///< linear tetrahedral strain: D x = F, U = ½kV‖F − R‖², w² = kV (Narain, Overby, Brown 2016)

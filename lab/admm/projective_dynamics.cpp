@@ -17,7 +17,7 @@ namespace meshorder {
 namespace {
 
 constexpr Index kVertices = 4096;  // of a chunk
-/// How often the last global step is made at most; it is repeated while vertices have new contacts.
+/// Largest number of times that the last global step is made; it is repeated while a new contact is violated.
 constexpr int kLastRounds = 8;
 /// Largest depth that a vertex may keep inside, as a share of ContactOptions::reach.
 constexpr double kAllowedDepth = 1e-2;
@@ -147,8 +147,9 @@ void ProjectiveDynamics<Real>::predict() {
   });
 }
 
-/// Sets report.residual to the larger residual of the last iteration, given the local steps at its positions.
-/// Returns whether an iteration was made and its residual is within the tolerance.
+/// Sets report.residual to the larger residual of the last iteration, if any was made; `local` is from the
+/// local steps after that iteration. Returns whether its residual is within the tolerance; false if none was
+/// made.
 template <class Real>
 bool ProjectiveDynamics<Real>::has_converged(const LocalResidual& local, StepReport& report) {
   const std::span<const Real> forces(right_side_.data(), x_.size());

@@ -16,10 +16,10 @@
 namespace meshorder {
 
 struct ProjectiveOptions : MotionOptions {
-  int iterations = 20;  ///< of a step; with a tolerance the maximum
+  int iterations = 20;  ///< of a step; if `tolerance` > 0, the maximum
   double tolerance =
       0.0;  ///< a step ends when both residuals (see ProjectiveDynamics) are below this; 0: never
-  bool keep_duals = true;  ///< from step to step; false: each step starts with zero duals
+  bool keep_duals = true;  ///< keeps the duals between steps; false: each step starts with duals 0
   ContactOptions contact;
   ContactSolverOptions contact_solver;
 };

@@ -18,8 +18,8 @@ namespace meshorder::HWY_NAMESPACE {
 /// Upper bound of singular values, so that no energy overflows.
 inline constexpr double kLargestStretch = 1e4;
 
-/// Solves (L D Lᵀ) x = −g, where L D Lᵀ is the symmetric matrix h, whose upper triangle is read. Each pivot
-/// is replaced by its magnitude, or by kMinPivot if that is larger, so that x is a descent direction.
+/// Solves h x = −g for the symmetric matrix h = L D Lᵀ, reading its upper triangle. Each pivot in D is
+/// replaced by its magnitude, or by kMinPivot if that is larger, so that x is a descent direction.
 template <class Lanes>
 HWY_INLINE void descent_direction(const typename Lanes::Value (&h)[3][3], const typename Lanes::Value (&g)[3],
                                   typename Lanes::Value (&x)[3]) {

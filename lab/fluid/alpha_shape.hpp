@@ -27,7 +27,8 @@ struct FluidMesh {
 
 /// Returns the alpha shape (Edelsbrunner, Mücke 1994) of a triangulation: the tetrahedra whose circumscribed
 /// sphere has a radius below 1.35 spacings. A face between the shape and the outside is on the free surface
-/// unless its corners all lie on one wall. Tetrahedra up to 0.003 cubic spacings are flat. O(tetrahedra).
+/// unless its corners all lie on one wall. Tetrahedra of at most 0.003 cubic spacings are flat.
+/// O(tetrahedra).
 FluidMesh alpha_shape(const Triangulation& triangulation, std::span<const Point> points,
                       std::span<const Walls> walls, double spacing);
 

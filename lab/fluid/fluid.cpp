@@ -60,7 +60,7 @@ void note(const char* whose, const SolveReport& solved, StepReport& report) {
                                         to_string(solved.status)));
 }
 
-/// Calls `work(i)` for 0 … n − 1, on all threads.
+/// Calls `work(i)` for i = 0 … n − 1, on all threads.
 template <class Work>
 void for_each(std::size_t n, const Work& work) {
   for_each_chunk(static_cast<Index>(n), kParticlesInChunk, [&](Index /*chunk*/, Index begin, Index end) {
@@ -236,7 +236,7 @@ void Fluid::project(double kick, double dt, StepReport& report) {
   report.seconds.motion += stopwatch.seconds();
 }
 
-/// Returns shifts of the inner particles that make their distances more even, m.
+/// Returns the shifts of inner particles, m, which make the distances between particles more even.
 std::vector<Point> Fluid::evening() const {
   const std::span<const Offset> offsets = system_.pattern.offsets();
   const std::span<const Index> neighbours = system_.pattern.neighbours();

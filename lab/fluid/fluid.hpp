@@ -44,7 +44,7 @@ class Fluid : public Integrator {
   /// Returns the memory held, in bytes, without the triangulation, which another process holds.
   [[nodiscard]] std::size_t bytes() const override;
 
-  // ---- of the last step, in the order of the particles now
+  // ---- of the last step, in the current order of the particles
   /// Returns the mesh that the step was computed on.
   [[nodiscard]] const FluidMesh& mesh() const noexcept { return mesh_; }
   /// Returns the number that each particle had at the start.

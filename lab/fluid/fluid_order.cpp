@@ -14,7 +14,7 @@ namespace {
 
 FluidOrdering checked(FluidOrdering ordering) {
   ordering.options.check = Check::none;  // the mesh is the program's own
-  // `max` pays at once; `lexmax` takes three times as long to sort and makes steps no faster
+  // `max` pays off at once; `lexmax` takes three times as long to sort and makes steps no faster
   if (ordering.elements == "auto") ordering.elements = "max";
   for (const auto& [method, known, what] : {std::tuple(&ordering.vertices, vertex_methods(), "vertices"),
                                             std::tuple(&ordering.elements, element_methods(), "elements")}) {

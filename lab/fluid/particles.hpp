@@ -35,7 +35,7 @@ inline constexpr Index kParticlesInChunk = 1 << 12;
 using Walls = std::uint8_t;
 inline constexpr Walls kNoWalls = 0;
 
-/// Returns the wall at 0, or at the extent, of an axis.
+/// Returns the wall across an axis, at 0 or at the basin's extent.
 constexpr Walls wall(int axis, bool at_extent) {
   return static_cast<Walls>(1U << static_cast<unsigned>(2 * axis + (at_extent ? 1 : 0)));
 }
@@ -56,8 +56,8 @@ Particles particles_at_start(const FluidOptions& options);
 /// Moves a particle that left the basin back to the wall, on which the particle then stays.
 void keep_inside(const FluidOptions& options, Point& position, Walls& walls);
 
-/// Throws InvalidArgument, which names the value, for options out of range and for more particles than the
-/// memory limit allows.
+/// Throws InvalidArgument, naming the value, for options out of range and for more particles than the memory
+/// limit allows.
 void check_options(const FluidOptions& options);
 
 }  // namespace meshorder

@@ -85,7 +85,7 @@ SolveReport solve(const ScalarSystem& system, double alpha, double beta, std::sp
   std::vector<double> r(n, 0);
   std::vector<double> d(n, 0);
   std::vector<double> q(n, 0);
-  std::vector<double> inverse(n, 0);  // 1 / diagonal; 0 where held
+  std::vector<double> inverse(n, 0);  // 1 / diagonal; 0 in rows that are not solved
   auto norms = sum_over_chunks<Norms>(n, kParticlesInChunk, [&](Index begin, Index end) {
     Norms part;
     for (Index i = begin; i < end; ++i) {

@@ -39,7 +39,7 @@ std::vector<double> divergence(const FluidMesh& mesh, std::span<const Point> poi
 /// Returns ∫ q ∇p for the hat function q of each vertex and the piecewise linear p.
 std::vector<Point> gradient(const FluidMesh& mesh, std::span<const Point> points, std::span<const double> p);
 
-/// Returns ∫ q ∇u likewise for a vector field u; row c is from the gradient of component c.
+/// Returns ∫ q ∇u for the hat functions q and a vector field u; row c is that of u's component c.
 std::vector<std::array<Point, 3>> gradient(const FluidMesh& mesh, std::span<const Point> points,
                                            std::span<const Point> u);
 

@@ -26,10 +26,10 @@ using Triangulate = std::function<Triangulation(std::span<const Point>)>;
 /// Returns whether the program `meshorder-delaunay` is found.
 bool has_delaunay_program();
 
-/// Starts the program `meshorder-delaunay` and returns a function that triangulates by it. The function
-/// checks the program's answers, and throws Error for a bad answer or if the program has ended. Throws Error
-/// if the program is not found beside this program or on PATH. The program is trusted like this program; a
-/// scenario cannot name another program.
+/// Starts the program `meshorder-delaunay` and returns a function that triangulates with the program. The
+/// function checks the program's answers, and throws Error for a bad answer or if the program has ended.
+/// Throws Error if the program is not found beside this program or on PATH. The program is trusted like this
+/// program; a scenario cannot name another program.
 Triangulate delaunay_program();
 
 }  // namespace meshorder

@@ -44,7 +44,7 @@ void check_options(const ImplicitOptions& options, Index vertex_count) {
 
 }  // namespace
 
-/// State of Newton's method: v, the gradient there and the next step.
+/// State of Newton's method: v, the gradient at v and the next step.
 struct BackwardEuler::Iterate {
   std::vector<double> velocities;
   std::vector<double> gradient;  ///< 0 at held vertices
@@ -265,8 +265,8 @@ void BackwardEuler::solve(Iterate& iterate, StepReport& report) {
   }
 }
 
-/// Shortens the step until the potential decreases (Armijo). If no length decreases it, adds a warning and
-/// returns false.
+/// Shortens the step until the potential decreases (Armijo). If no length decreases the potential, adds a
+/// warning and returns false.
 bool BackwardEuler::search_line(Iterate& iterate, StepReport& report) {
   constexpr double kEnough = 1e-4;     // of the decrease that the slope predicts
   constexpr double kRounding = 1e-13;  // of the potential's terms

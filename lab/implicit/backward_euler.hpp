@@ -16,7 +16,7 @@ namespace meshorder {
 
 enum class MatrixPrecision : std::uint8_t {
   double_,  ///< all in double
-  single,   ///< CG reads the matrix in float, to the same residual (see refined_conjugate_gradients)
+  single,   ///< CG reads a float matrix but reaches the same residual (see refined_conjugate_gradients)
 };
 
 template <>
@@ -87,7 +87,7 @@ class BackwardEuler final : public Integrator {
 
   Index steps_ = 0;
   AlignedVector<double> positions_;  ///< 4 a vertex
-  std::vector<double> velocities_;   ///< 3 a vertex, as below
+  std::vector<double> velocities_;   ///< 3 a vertex, like loads_ and scratch_
   std::vector<double> loads_;        ///< f_ext of the step
   AlignedVector<double> moved_;      ///< xₙ + h v, 4 a vertex
   std::vector<double> scratch_;

@@ -66,7 +66,7 @@ ElasticSystem::ElasticSystem(std::span<const Point> points, const Body& body, Ma
 
 void ElasticSystem::assemble(std::span<const double> positions, Tangent tangent, double mass_factor,
                              double stiffness_factor, const BlockCsr* added) {
-  // only this time: the next assembly uses the body's own tangent again
+  // only during this assembly: elasticity() keeps the body's own tangent
   const Tangent given = std::exchange(elasticity_.tangent, tangent);
   const Stiffness stiffness{map_, matrix_, stiffness_factor};
   for_each_part(index_size(shares_), [&](Index part) {

@@ -55,7 +55,7 @@ struct Counts {
 };
 Counts counts_of(const std::filesystem::path& node_file);
 
-/// Moves `from.node` and `from.ele` to `to.node` and `to.ele`, in one file system. Throws Error if that
+/// Moves `from.node` and `from.ele` to `to.node` and `to.ele` in the same file system. Throws Error if that
 /// fails.
 void publish(const std::filesystem::path& from, const std::filesystem::path& to);
 

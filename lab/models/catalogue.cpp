@@ -28,7 +28,7 @@ struct Recipe {
   std::string_view description;
   std::string_view surface;
   std::string_view tetgen_options;
-  double alpha_ratio = 0;  ///< of the wrap; 0: fill the surface as it is
+  double alpha_ratio = 0;  ///< of the wrap, diagonal / alpha; 0: fill the surface as it is
   double offset_ratio = 0;
 };
 
@@ -65,7 +65,7 @@ std::optional<Index> size_in(std::string_view name, const Rule& rule) {
   return size;
 }
 
-/// Returns a model, with its path and counts if it is made.
+/// Returns a model, with its path and counts if it has been made.
 Model look_up(std::string name, std::string_view description, bool procedural) {
   Model model{std::move(name), std::string(description), procedural, {}, 0, 0};
   fs::path path = models_folder() / (model.name + ".node");

@@ -33,7 +33,7 @@ struct StepReport {
   int contact_iterations = 0;  ///< of the solver of the global step with contacts
   Index contacts = 0;          ///< number of contacts with a force at the end of the step
   double penetration = 0.0;    ///< largest depth of a surface vertex in an obstacle at the end of the step, m
-  Index vertices_in_itself = 0;  ///< surface vertices inside the body at the step's end
+  Index vertices_in_itself = 0;  ///< number of surface vertices inside the body at the step's end
 
   double time_step = 0.0;             ///< s
   double residual = 0.0;              ///< of the last linear solve, or of the last ADMM iteration; relative

@@ -68,7 +68,7 @@ void check_options(const MotionOptions& options, Index vertex_count) {
 void collect_loads(const MotionOptions& options, Index steps, std::span<const double> masses,
                    std::span<double> forces, HeldVertices& held) {
   const double h = options.time_step;
-  // bounds that are multiples of h may have rounding errors
+  // time bounds that are multiples of h may have rounding errors
   const auto acts = [&](const Selection& selection) {
     const double now = h * steps + 1e-9 * h;
     return selection.from <= now && now < selection.until;

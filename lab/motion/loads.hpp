@@ -14,7 +14,7 @@ namespace meshorder {
 class HeldVertices {
  public:
   void clear();
-  /// Holds a vertex. If a vertex is held twice, the later velocity counts.
+  /// Holds a vertex. If a vertex is held twice, the velocity given last counts.
   void hold(Index vertex, const Point& velocity);
 
   /// Sets the velocities of the held vertices in a vector of 3 doubles for each vertex. O(held).
@@ -24,7 +24,7 @@ class HeldVertices {
   /// Returns the held vertices, in the order in which they were given.
   [[nodiscard]] std::span<const Index> vertices() const noexcept { return vertices_; }
 
-  /// Calls `work(vertex, velocity)` for the held vertices in that order.
+  /// Calls `work(vertex, velocity)` for the held vertices, in the order of vertices().
   template <class Work>
   void for_each(Work work) const {
     for (std::size_t i = 0; i < vertices_.size(); ++i) work(vertices_[i], velocities_[i]);

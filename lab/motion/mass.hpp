@@ -22,8 +22,8 @@ struct EnumNames<Mass> {
                                     std::pair{Mass::consistent, "consistent"}};
 };
 
-/// Returns the lumped masses of `vertex_count` vertices, kg. `densities` in kg/m³ are one, or one for each
-/// simplex. O(simplices).
+/// Returns the lumped masses of `vertex_count` vertices, kg. `densities` holds one density (kg/m³), or one
+/// for each simplex. O(simplices).
 std::vector<double> lumped_masses(const RestShapes& rest, std::span<const double> densities,
                                   Index vertex_count);
 

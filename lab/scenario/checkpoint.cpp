@@ -55,7 +55,7 @@ class Packer {
   std::string bytes_;
 };
 
-/// Reads what a Packer wrote. `what` is for errors.
+/// Reads what a Packer wrote. `what` names the value in errors.
 class Unpacker {
  public:
   explicit Unpacker(Scanner& file) : file_(file) {}

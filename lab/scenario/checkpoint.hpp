@@ -20,9 +20,9 @@ struct Checkpoint {
 void write_checkpoint(const Checkpoint& checkpoint, const std::filesystem::path& path);
 
 /// Reads a checkpoint. Throws Error:
-/// - with the byte, for a file that is not a checkpoint, is truncated or changed, or has the other byte
-///   order;
-/// - with what differs, for a checkpoint of another simulation than `expected`.
+/// - which names the byte, for a file that is not a checkpoint, is truncated or changed, or has the other
+///   byte order;
+/// - which says what differs, for a checkpoint of another simulation than `expected`.
 Checkpoint read_checkpoint(const FilePath& path, const Fingerprint& expected);
 
 }  // namespace meshorder

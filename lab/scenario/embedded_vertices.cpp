@@ -12,7 +12,7 @@ namespace {
 
 double determinant(const Point& a, const Point& b, const Point& c) { return dot(a, cross(b, c)); }
 
-/// Returns barycentric coordinates by Cramer's rule; not finite in a flat tetrahedron.
+/// Returns barycentric coordinates of `at` by Cramer's rule; not finite in a flat tetrahedron.
 std::array<double, 4> weights_of(const Point& at, const std::array<Point, 4>& corners) {
   const Point a = minus(corners[1], corners[0]);
   const Point b = minus(corners[2], corners[0]);

@@ -20,7 +20,7 @@ struct EmbeddedVertex {
 };
 
 /// Embeds the nodes on edges, on faces and inside volume cells. Each node is embedded in the tetrahedron of
-/// its cells where its least weight is greatest; the first of equal ones. `simplices` are the mesh's
+/// its cells in which its least weight is greatest; the first of equals. `simplices` are the mesh's
 /// tetrahedra. Vertices that belong to no volume cell, or only to flat volume cells, are not embedded.
 /// O(tetrahedra · nodes of a cell).
 std::vector<EmbeddedVertex> embed_vertices(const Mesh& mesh, const Simplices& simplices);

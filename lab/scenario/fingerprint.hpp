@@ -10,8 +10,8 @@
 
 namespace meshorder {
 
-/// Identifies a simulation: checksums of the mesh, of its order and of all numbers that the motion depends
-/// on, but not of the number of steps.
+/// Checksums that identify a simulation: of the mesh, of its order, and of all numbers that the motion
+/// depends on, without the number of steps.
 struct Fingerprint {
   std::uint64_t mesh = 0;
   std::uint64_t order = 0;
@@ -20,7 +20,7 @@ struct Fingerprint {
   bool operator==(const Fingerprint&) const = default;
 };
 
-// The checksums. O(size of the arguments) each.
+// Return checksums. O(size of the arguments) each.
 std::uint64_t checksum_of(const std::vector<Point>& points, const Simplices& simplices);
 std::uint64_t checksum_of(const MeshOrder& order);
 std::uint64_t checksum_of(const FluidOptions& options);

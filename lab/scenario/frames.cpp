@@ -19,7 +19,7 @@ namespace meshorder {
 namespace {
 namespace fs = std::filesystem;
 
-// the frame's own arrays come first: the writer drops later arrays of the same name
+// the frame's own arrays come first: of arrays with one name, the writer renames all but the first
 enum OwnArray : std::uint8_t { kDisplacement, kVelocity, kOriginalVertex, kOriginalCell };
 
 std::vector<Index> old_places(const Permutation& order) {

@@ -26,7 +26,7 @@ class FrameWriter {
   /// Throws Error if the folder cannot be made or written, InvalidArgument unless `every` is positive.
   FrameWriter(const Simulation& simulation, std::filesystem::path folder, Index every);
 
-  /// Lists, of the recorded steps, the frames that an earlier run left in the folder.
+  /// Lists each recorded step's frame that an earlier run left in the folder.
   void resume_after(const MotionRecord& record);
 
   /// Returns whether a frame is due after `step`.

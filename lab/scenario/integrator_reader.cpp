@@ -25,7 +25,7 @@ void read_count(const JsonValue& owner, std::string_view key, int most, int& cou
 
 // ---- materials
 
-/// Whether a material has Young's modulus and Poisson's ratio, or a stiffness.
+/// The numbers of an elastic material: Young's modulus and Poisson's ratio, or a stiffness.
 enum class Elastic : std::uint8_t { moduli, stiffness };
 
 Material material_of(const JsonValue& value, Elastic elastic, Material numbers) {

@@ -23,7 +23,7 @@ std::string header_of(Index frames, Index vertices) {
   return npy_header("<f4", std::array<std::int64_t, 3>{frames, vertices, 3});
 }
 
-/// Returns a message without the characters of numbers; messages that differ only in numbers become equal.
+/// Returns a message without all characters of numbers; messages that differ only in numbers become equal.
 std::string without_numbers(std::string_view message) {
   constexpr std::string_view kOfNumbers = "0123456789.,+-einfa";
   std::string result;

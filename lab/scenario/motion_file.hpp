@@ -62,8 +62,8 @@ class SurfaceFile {
   Offset rows_ = 0;
 };
 
-/// Reads the triangles of `frames` frames. Throws Error, with the byte, for a file that is not such an array,
-/// is truncated, or names a frame or vertex that does not exist.
+/// Reads the triangles of `frames` frames. Throws Error, which names the byte, for a file that is not such an
+/// array, is truncated, or has a frame or vertex that does not exist.
 std::vector<std::vector<std::array<Index, 3>>> read_surfaces(const FilePath& path, std::size_t frames,
                                                              Index vertices);
 

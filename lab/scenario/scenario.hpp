@@ -51,7 +51,7 @@ struct StepRange {
 struct ScenarioForce {
   VertexChoice on;
   StepRange steps;
-  Point newtons{};  ///< on each vertex
+  Point newtons{};  ///< force on each vertex
 };
 
 struct ScenarioMotion {
@@ -68,7 +68,7 @@ struct ScenarioStart {
   std::optional<Point> at;        ///< one position for all, relative to the bounding box
 };
 
-/// An obstacle that the body must stay outside of, in metres and the body's coordinates.
+/// An obstacle that the body must stay outside of, in the body's coordinates, m.
 struct ScenarioObstacle {
   enum class Kind : std::uint8_t { half_space, sphere, bowl, surface };
   Kind kind = Kind::half_space;
@@ -77,7 +77,7 @@ struct ScenarioObstacle {
   double radius = 0.0;           ///< of the sphere, or of the middle of the bowl's wall
   double thickness = 0.0;        ///< of the bowl
   double opening = 0.0;          ///< half the opening angle of the bowl, degrees
-  std::string file;              ///< of a closed surface
+  std::string file;              ///< path of a closed surface
   std::filesystem::path folder;  ///< the folder that `file` must lie in
   double friction = 0.0;         ///< Coulomb's coefficient
 };
@@ -104,8 +104,8 @@ struct Scenario {
   std::string mesh;   ///< a model's name, or the path of a file; empty for a fluid
   /// The folder that the mesh must lie in; empty if the user named the mesh.
   std::optional<std::filesystem::path> mesh_folder;
-  double longest_side = 0;      ///< of the bounding box that the mesh is scaled to, m; 0: not scaled
-  double height = 0;            ///< side of that box along y, m; 0: `longest_side` counts
+  double longest_side = 0;      ///< of the scaled mesh's bounding box, m; 0: `height` counts
+  double height = 0;            ///< side of that box along y, m; both 0: the mesh is not scaled
   std::optional<Point> bottom;  ///< position of the middle of the box's bottom, m
   std::string vertex_order = "original";
   std::string element_order = "original";
@@ -119,7 +119,7 @@ struct Scenario {
 
   /// The options' forces and prescribed motions are empty; `forces` and `motions` below describe them.
   std::variant<ImplicitOptions, ProjectiveScenario, FluidScenario> integrator;
-  std::vector<ScenarioStart> start;  ///< if two apply to a vertex, the later one wins
+  std::vector<ScenarioStart> start;  ///< an entry overrides the entries before it
   std::vector<ScenarioForce> forces;
   std::vector<ScenarioMotion> motions;  ///< fixed vertices have the velocity 0
   Index steps = 240;
@@ -152,12 +152,12 @@ struct Scenario {
   }
 };
 
-/// Returns whether `mesh` is a model's name rather than a file's: it has no folder and no extension.
+/// Returns whether `mesh` is a model's name rather than a file's: with neither folder nor extension.
 bool names_a_model(std::string_view mesh);
 
 /// Returns the scenario that a file's text describes. `file` is its path: errors name it, and the mesh file
-/// is relative to its folder. Throws Error, which names the path in the file, for values that are unknown,
-/// missing, of the wrong type or out of range. Does not read the mesh.
+/// is relative to its folder. Throws Error, which names the value, for values that are unknown, missing, of
+/// the wrong type or out of range. Does not read the mesh.
 Scenario parse_scenario(std::string_view text, const std::string& file);
 
 /// Reads a scenario's file. Throws Error like `parse_scenario`, or if there is no such file.
@@ -170,8 +170,8 @@ struct BuiltInScenario {
 };
 std::span<const BuiltInScenario> built_in_scenarios();
 
-/// Returns the built-in scenario of that name, else reads that file. Throws Error, which lists the names, if
-/// neither exists.
+/// Returns the built-in scenario of that name, else reads that file. Throws Error like `read_scenario`; lists
+/// the names if neither exists.
 Scenario find_scenario(const std::string& name_or_file);
 
 }  // namespace meshorder

@@ -42,7 +42,7 @@ void require_volume_cells(const Mesh& mesh, const std::string& file);
 /// order.
 Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, const OrderOptions& ordering = {});
 
-/// Does the same in a given order. Throws InvalidArgument if the order is of another mesh.
+/// Does the same with a given order. Throws InvalidArgument if the order is of another mesh.
 Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, MeshOrder order);
 
 }  // namespace meshorder

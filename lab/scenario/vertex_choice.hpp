@@ -21,7 +21,7 @@ struct BoundingBox {
 BoundingBox bounding_box(std::span<const Point> points, std::span<const Index> vertices);
 
 /// Returns the vertices that `choice` describes among the `candidates`, ascending. The candidates are the
-/// vertices of the simulation, ascending, too. The result does not depend on the numbering: of several
+/// vertices of the simulation, also ascending. The result does not depend on the numbering: of several
 /// nearest points, the one with the smallest coordinates counts (x before y before z), and all vertices at
 /// that point are chosen. Relative coordinates refer to the candidates' bounding box; along a side of length
 /// 0 they are 0.

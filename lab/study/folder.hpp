@@ -16,12 +16,12 @@ namespace meshorder {
 /// and to make its report again; all other files are made from these.
 class StudyFolder {
  public:
-  /// @param is_named  whether the user gave the folder, so that it may be a symbolic link
+  /// @param is_named  whether the user gave the folder, which may then be a symbolic link
   explicit StudyFolder(std::filesystem::path root, bool is_named = true)
       : root_(std::move(root)), named_(is_named ? root_ : root_.parent_path()) {}
 
   [[nodiscard]] const std::filesystem::path& root() const noexcept { return root_; }
-  /// Returns one of the paths below as a file, which must lie in the named folder to be read.
+  /// Returns one of the paths below as a file; it is not read if it lies outside the named folder.
   [[nodiscard]] FilePath file(const std::filesystem::path& path) const { return FilePath::in(named_, path); }
   [[nodiscard]] std::filesystem::path results() const { return root_ / "results.json"; }
   [[nodiscard]] std::filesystem::path data() const { return root_ / "data"; }
@@ -36,7 +36,7 @@ class StudyFolder {
   [[nodiscard]] std::filesystem::path mesh(std::string_view mesh) const {
     return data() / (std::string(mesh) + ".vtu");
   }
-  /// Return the path of the NumPy array old_to_new of an order: the new number of each vertex, or cell.
+  /// Return the paths of an order's NumPy arrays old_to_new: the new number of each vertex, or each cell.
   [[nodiscard]] std::filesystem::path vertex_order(std::string_view mesh, std::string_view ordering) const {
     return data() / (std::string(mesh) + "-" + std::string(ordering) + ".vertices.npy");
   }
@@ -48,7 +48,7 @@ class StudyFolder {
   [[nodiscard]] std::filesystem::path motion(std::string_view scenario) const {
     return data() / (std::string(scenario) + "-motion.npy");
   }
-  /// Returns the path of a fluid's surface in the frames: a NumPy array of rows (frame, three vertices). A
+  /// Returns the path of the surface triangles of a fluid: a NumPy array of rows (frame, three vertices). A
   /// body has no such file.
   [[nodiscard]] std::filesystem::path surfaces(std::string_view scenario) const {
     return data() / (std::string(scenario) + "-surfaces.npy");
@@ -64,7 +64,7 @@ class StudyFolder {
   std::filesystem::path named_;
 };
 
-/// Returns the time now, "2026-11-20T17:30:00Z".
+/// Returns the UTC time now, "2026-11-20T17:30:00Z".
 inline std::string timestamp_now() {
   const std::time_t now = std::time(nullptr);
   std::tm utc{};

@@ -17,7 +17,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the id of the process that holds a lock on an open file, from Linux's list of locks; 0: none.
+/// Returns the id of the process that holds a lock on an open file, per /proc/locks; 0 if none is found.
 long holder_of(int descriptor) {
   struct stat status {};
   if (::fstat(descriptor, &status) != 0) return 0;

@@ -11,8 +11,8 @@ namespace meshorder {
 /// Keeps other processes from working on a study's folder, until the lock is destroyed or the process ends.
 class FolderLock {
  public:
-  /// Throws InputError, which names the process if it is found, if another process holds the lock. If the
-  /// file system has no locks, the folder is not locked.
+  /// Throws InputError if another process holds the lock; the error names that process if it is found. If
+  /// locking fails for another reason, the folder is not locked.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

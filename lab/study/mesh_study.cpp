@@ -19,7 +19,7 @@ namespace meshorder {
 namespace {
 
 constexpr Offset kMostExact = 1'000'000;
-/// Approximate share of the time that orders and simulated caches take, if kernels are timed.
+/// Approximate share of the time for orders and simulated caches, if kernels are timed, too.
 constexpr double kUntilTiming = 0.5;
 
 /// Returns the seconds that `call` takes on the arena's threads: the best of three calls; a call of a second
@@ -93,7 +93,7 @@ class MeshStudy {
   OrderedMesh result() && { return std::move(result_); }
 
  private:
-  /// Computes the order and returns its cost, s.
+  /// Computes the order and returns its cost (s).
   double compute(const OrderingSpec& ordering, MeshOrder& order) {
     Mesh moved;
     const double seconds = best_seconds(

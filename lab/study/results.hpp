@@ -46,7 +46,7 @@ struct MeshOrderRecord {
   double seconds = 0;  ///< cost of the order: the vertex graph, both orders, moving the mesh
   EdgeSpan span;
   std::vector<Offset>
-      span_histogram;  ///< entry k: edges of spans from k·w to (k + 1)·w − 1, w = MeshRecord::span_bin
+      span_histogram;  ///< entry k: number of edges with spans k·w … (k + 1)·w − 1, w = MeshRecord::span_bin
   std::array<KernelRecord, kKernels.size()> kernels;
 
   bool operator==(const MeshOrderRecord&) const = default;
@@ -61,7 +61,7 @@ struct NamedCaches {
 
 /// Measurements and predictions on a mesh in the study's orders.
 struct MeshRecord {
-  std::string name;  ///< unique in a study: of the model, the fluid, or the file without extension
+  std::string name;  ///< unique in a study: name of a model, a fluid, or a file without extension
   std::string file;  ///< relative to the study's folder
   Index vertices = 0;
   Offset tetrahedra = 0;
@@ -69,7 +69,7 @@ struct MeshRecord {
   Index span_bin = 50;  ///< bin width of span histograms, see `span_bin_width`
   std::vector<NamedCaches> hierarchies;
   std::vector<MeshOrderRecord> orders;  ///< the computed orders, in the sequence of StudyResults::orderings
-  std::string verdict;                  ///< what reordering is worth, a sentence; may be empty
+  std::string verdict;                  ///< sentence on what reordering is worth; may be empty
   /// Speedup, as a factor, of the kernel that gains most in the order that the verdict names; 0 if nothing is
   /// gained or if the gain is in doubt.
   double gain = 0;
@@ -80,7 +80,7 @@ struct MeshRecord {
 /// One run of a scenario in one order. `step_seconds` does not include set-up.
 struct RunRecord {
   std::string began;                 ///< "2026-11-20T17:30:00Z"
-  std::vector<double> step_seconds;  ///< of each step
+  std::vector<double> step_seconds;  ///< one for each step
   StepReport::Seconds seconds;       ///< sums over the steps
   Offset cg_iterations = 0;
   Offset admm_iterations = 0;
@@ -95,13 +95,13 @@ struct RunRecord {
 /// Seconds of all steps of a scenario in one order, summarised over the runs.
 struct TimeSummary {
   double mean = 0;
-  double deviation = 0;    ///< standard deviation of the runs' sums (n − 1); 0 for one run
-  double undisturbed = 0;  ///< sum of each step's fastest time over the runs
+  double deviation = 0;    ///< standard deviation of the runs' sums, with divisor n − 1; 0 for one run
+  double undisturbed = 0;  ///< sum, over the steps, of the step's fastest time in any run
 
   bool operator==(const TimeSummary&) const = default;
 };
 
-/// An order compared with the reference, by turns that were measured side by side.
+/// Savings of an order over the reference, from turns that were measured side by side.
 struct Speedup {
   double saved_seconds = 0;              ///< the reference's mean minus this order's
   double percent = 0;                    ///< saved share of the reference's mean, as in the paper's Table 4
@@ -130,11 +130,11 @@ struct ScenarioRecord {
   std::string material;     ///< "corotational", "springs"
   std::string precision;    ///< "double" or "single"; empty in results of earlier versions
   std::string mesh;         ///< MeshRecord::name
-  std::string fingerprint;  ///< of the mesh and, in the first order, of the parameters
+  std::string fingerprint;  ///< of the mesh, and of the parameters in the first order
   Index steps = 0;
   Index turn = 0;                  ///< steps that were timed in one order before the next order's turn
   bool interleaved = true;         ///< false: one order after another, since memory cannot hold all
-  bool fixed_addresses = false;    ///< every order had its arrays at the same addresses
+  bool fixed_addresses = false;    ///< the processes had no address space randomisation
   std::vector<int> processors;     ///< that the threads were bound to; empty: not bound
   std::vector<Index> frame_steps;  ///< steps after which a frame was kept; the first is 0
   std::vector<ScenarioOrderRecord> orders;
@@ -166,8 +166,8 @@ auto find_named(Records& records, std::string_view name) -> decltype(records.dat
   return nullptr;
 }
 
-/// Returns the entry for an order in a mesh's or scenario's record; nullptr if there is none, or it has no
-/// runs.
+/// Returns the entry for an order in a mesh's or scenario's record; nullptr if there is no such entry, or if
+/// the entry has no runs.
 template <class Record>
 auto find_order(const Record& record, std::string_view ordering) -> decltype(record.orders.data()) {
   for (auto& order : record.orders) {

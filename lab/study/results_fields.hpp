@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// A key of a record's JSON object, and the record's member for its value. Unless `free`, a text must not be
-/// empty and a number not negative. An `optional` key was not written by earlier versions: where it is
+/// A key of a record's JSON object, and the member that holds its value. Unless `free`, a text must not be
+/// empty and a number must not be negative. Earlier versions did not write `optional` keys: if such a key is
 /// missing, the member keeps its value.
 template <class Record, class Value>
 struct Field {

@@ -91,7 +91,7 @@ std::set<std::string> unique_names(const std::vector<Record>& records, std::stri
   return names;
 }
 
-/// Throws unless the text at `value` is one of the names.
+/// Throws unless `names` contains the text at `value`.
 void expect_one_of(const std::set<std::string>& names, const JsonValue& value, std::string_view list) {
   if (!names.contains(value.text()))
     throw value.error("'" + value.text() + "' is not one of the " + std::string(list),
@@ -134,8 +134,8 @@ void check_record(const MeshRecord& mesh, const JsonValue& value) {
   for (const JsonValue& order : value["orders"].items()) expect_misses(mesh.hierarchies, order);
 }
 
-/// Throws unless numbers and precision are valid, no order occurs twice, each run has all steps, and each
-/// order has a difference for every frame, or none.
+/// Throws unless `steps` and `turn` are positive, the precision is known or empty, no order occurs twice,
+/// each run has all steps, and each order has motion differences for all frames or none.
 void check_record(const ScenarioRecord& scenario, const JsonValue& value) {
   expect_positive(scenario.steps, value, "steps");
   expect_positive(scenario.turn, value, "turn");
@@ -168,7 +168,7 @@ void check_record(const StudyResults& results, const JsonValue& value) {
     expect_one_of(meshes, scenario["mesh"], "meshes");
 }
 
-/// Other records need no check beyond the types of their fields.
+/// Checks nothing: other records need no check beyond the types of their fields.
 template <class Record>
 void check_record(const Record& /*record*/, const JsonValue& /*value*/) {}
 
@@ -212,7 +212,7 @@ class Reader {
   static void read(const JsonValue& value, std::vector<Value>& values, bool free) {
     for (const JsonValue& item : value.items()) read(item, values.emplace_back(), free);
   }
-  /// Reads the number of a step, counted from 1; empty for null.
+  /// Reads the number of a step, counted from 1; leaves `step` as it is for null.
   static void read(const JsonValue& value, std::optional<Index>& step, bool /*free*/) {
     if (!value.is_null()) step = static_cast<Index>(value.whole(1, kMaxIndex));
   }

@@ -17,7 +17,7 @@ nlohmann::ordered_json to_json(const StudyResults& results);
 void write_results(const StudyResults& results, const FilePath& path);
 
 /// Reads results that write_results wrote; their values are the same bit for bit. Throws Error, which names
-/// the path in the file, for values that are missing, unknown or out of range.
+/// the value, for values that are missing, unknown or out of range.
 StudyResults read_results(const FilePath& path);
 
 }  // namespace meshorder

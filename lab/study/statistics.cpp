@@ -14,7 +14,7 @@ namespace meshorder {
 namespace {
 
 constexpr double kConfidence = 0.95;
-/// Whole runs differ if their sums' variance exceeds the variance that turns explain by this factor.
+/// Whole runs differ if their sums' variance is more than this times the variance that turns explain.
 constexpr double kRunsDiffer = 3.0;
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
@@ -61,7 +61,7 @@ std::vector<double> differences(const std::vector<double>& from, const std::vect
   return result;
 }
 
-/// Returns half the interval's width in seconds, from the savings in each turn of two or more runs.
+/// Returns half the interval's width in seconds, from the seconds that two or more runs save in each turn.
 double half_width_of_runs(const std::vector<std::vector<double>>& saved_by_run) {
   const auto runs = static_cast<double>(saved_by_run.size());
   double of_turns = 0;
@@ -105,7 +105,7 @@ std::optional<Index> break_even_step(const std::vector<double>& saved_by_step, d
   return std::nullopt;
 }
 
-/// Returns the cost of an order of that mesh, s; infinite if it is not known.
+/// Returns the seconds that an order of that mesh costs; infinite if they are not known.
 double order_seconds(const StudyResults& results, const std::string& mesh, const std::string& ordering) {
   const MeshRecord* const record = find_named(results.meshes, mesh);
   const MeshOrderRecord* const order = record == nullptr ? nullptr : find_order(*record, ordering);

@@ -19,7 +19,7 @@ TimeSummary summary_of(const std::vector<RunRecord>& runs);
 /// Let d[r][b] be the seconds that run r saves in turn b, of R runs and B turns. The saving is Σ_b mean_r
 /// d[r][b]. Its variance is estimated by Σ_b s²_b / R, where s²_b is the variance of d[·][b] over the runs.
 /// The interval is Student's with B (R − 1) degrees of freedom. A machine that is slower for a while does not
-/// matter: both orders of a turn were measured side by side. A whole run may differ, for instance by its
+/// matter: in a turn, both orders are measured side by side. A whole run may differ, for instance by its
 /// memory pages. Runs are assumed to differ if the variance of their sums is more than three times the
 /// variance that the turns explain, which happens by chance in one case of twenty. The interval is then that
 /// of the R sums, with R − 1 degrees, which is wider.
@@ -37,10 +37,10 @@ TimeSummary summary_of(const std::vector<RunRecord>& runs);
 Speedup speedup_of(const std::vector<RunRecord>& runs, const std::vector<RunRecord>& reference, Index turn,
                    double order_seconds);
 
-/// Computes summaries, speedups and break-even steps of all scenarios from the runs. An order's cost is that
-/// on the scenario's mesh; 0 for a fluid, whose steps include it. An order of unknown cost never breaks even.
-/// If an order and the reference differ in their number of runs, only the first runs that both have are
-/// compared. Scenarios without runs of the reference get summaries only.
+/// Computes summaries, speedups and break-even steps of all scenarios from the runs. The cost of an order is
+/// its cost on the scenario's mesh; 0 for a fluid, whose steps include it. An order of unknown cost never
+/// breaks even. If an order and the reference differ in their number of runs, only the first runs that both
+/// have are compared. Scenarios without runs of the reference get summaries only.
 void summarise(StudyResults& results);
 
 /// Returns the t for which a variable of Student's distribution lies between −t and t with the given

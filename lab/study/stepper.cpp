@@ -125,10 +125,10 @@ class Stepping {
   Index step_ = 0;
   std::vector<WarningRecord> warnings_;
   std::optional<MotionFile> frames_;
-  std::optional<SurfaceFile> surfaces_;  ///< of a fluid
+  std::optional<SurfaceFile> surfaces_;  ///< only for a fluid
 };
 
-/// Returns a message in one line; bytes that are not UTF-8 become U+FFFD.
+/// Returns a message as one line; bytes that are not UTF-8 become U+FFFD.
 std::string line_of(const nlohmann::json& message) {
   return message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -160,7 +160,7 @@ void serve_steps(std::istream& questions, std::ostream& answers) {
 
 namespace {
 
-/// Returns the child's arguments, which give it this process's limits for reading a mesh.
+/// Returns the child's arguments, with this process's limits for reading a mesh.
 std::vector<std::string> arguments_for(int threads) {
   std::vector<std::string> arguments{"serve-steps", "--threads", std::to_string(threads)};
   if (const MemoryLimit limit = memory_limit(); limit.is_given) {

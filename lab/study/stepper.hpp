@@ -24,13 +24,13 @@ namespace meshorder {
 /// What to simulate.
 struct StepperTask {
   std::string scenario = {};         ///< a name or a file
-  std::string mesh = {};             ///< a file; it need not be the scenario's own
+  std::string mesh = {};             ///< a mesh file; need not be the scenario's own
   std::string vertex_order = {};     ///< file of the NumPy array old_to_new; empty: the mesh's own order
   std::string cell_order = {};       ///< the same for cells
   std::vector<int> processors = {};  ///< to bind the process to; empty: not bound
-  // only for a fluid, which has no files of a mesh or of orders
+  // only for a fluid, which has no mesh file and no order files
   std::string vertex_method = {};   ///< "auto": a Reorderer decides when to order; others: see FluidOrdering
-  std::string element_method = {};  ///< of the tetrahedra, in each step
+  std::string element_method = {};  ///< method for the tetrahedra, in each step
   double spacing = 0;               ///< of the particles, m
 };
 
@@ -42,7 +42,7 @@ struct StepperReady {
   double setup_seconds = 0;
   double step_seconds = 0;       ///< of the warm-up step, which is undone
   Offset bytes = 0;              ///< memory of the body
-  std::string fingerprint;       ///< of the mesh and, in this order, of the parameters
+  std::string fingerprint;       ///< checksums of the mesh, and of the parameters in this order
   bool fixed_addresses = false;  ///< address space randomisation is off
 };
 
@@ -50,9 +50,9 @@ struct StepperReady {
 struct StepperTurn {
   Index steps = 0;
   std::string frames;         ///< file for the motion, in the mesh's own order; empty: no frames
-  Index frame_every = 1;      ///< steps from one frame to the next; the first is at the start
+  Index frame_every = 1;      ///< steps from one frame to the next; the first frame is at the start
   bool last = false;          ///< the last turn: completes the files
-  std::string surfaces = {};  ///< file for the surface of a fluid in the frames; empty: none
+  std::string surfaces = {};  ///< file for a fluid's surface in each frame; empty: none
 };
 
 template <>

@@ -19,7 +19,7 @@ std::vector<OrderingSpec> paper_orderings();
 /// Returns the paper's orderings and the ordering that `meshorder order` makes.
 std::vector<OrderingSpec> study_orderings();
 
-/// Returns the study's ordering of that name, or for a name VERTICES/ELEMENTS the ordering by these two
+/// Returns the study's ordering of that name or, for a name VERTICES/ELEMENTS, the ordering by these two
 /// methods. Throws InvalidArgument for any other name.
 OrderingSpec study_ordering(std::string_view name);
 
@@ -33,15 +33,15 @@ struct StudyPlan {
   int runs = 3;
   int threads = 1;
   std::optional<Index> steps;              ///< instead of the scenarios' own steps
-  std::optional<double> scenario_seconds;  ///< limits one run in all orders; at least 8 steps
+  std::optional<double> scenario_seconds;  ///< limit for a run in all orders, s; at least 8 steps are run
   double kernel_seconds = 12;              ///< time for running kernels on each mesh, s
   bool pin = true;                         ///< bind threads to processors
   OrderOptions ordering = {};
 };
 
-/// Returns a scenario's mesh in a study of that size: the scenario's own, `mesh`, for "paper", the armadillo
-/// with 291,000 vertices for "300k", a lattice with 1.9 million vertices for "2m". Throws InvalidArgument for
-/// any other size.
+/// Returns a scenario's mesh in a study of that size; "paper": the scenario's own, `mesh`; "300k": the
+/// armadillo with 291,000 vertices; "2m": a lattice with 1.9 million vertices. Throws InvalidArgument for any
+/// other size.
 std::string mesh_of_size(std::string_view size, const std::string& mesh);
 
 /// Returns the names of the built-in scenarios that a study runs: those of the paper's simulators, and the

@@ -138,7 +138,7 @@ class Study {
     if (const ScenarioRecord* const begun = store_.find(subject.scenario.name)) go_on_with(*begun, subject);
   }
 
-  /// Divides further runs into the turns of the first run. Throws Error if the simulation is another one.
+  /// Sets the turns to those of the first run. Throws Error if `begun` is of another simulation.
   void go_on_with(const ScenarioRecord& begun, Subject& subject) const {
     const bool may_have_other_steps = plan_.scenario_seconds && !plan_.steps;
     if (begun.fingerprint != subject.body.fingerprint ||
@@ -184,7 +184,7 @@ class Study {
            subject.body.step_seconds * static_cast<double>(plan_.orderings.size());
   }
 
-  /// Runs the missing runs of a scenario. Returns false if stopped.
+  /// Makes the missing runs of a scenario. Returns false if stopped.
   bool run_all(const Subject& subject, const Share& share) {
     const int first = store_.runs_done(subject.scenario.name);
     const double count = plan_.runs - first;
@@ -223,7 +223,7 @@ class Study {
     return true;
   }
 
-  /// Returns the record of a scenario after its first run, with the compared motions but without runs.
+  /// Returns the record of a scenario after its first run, with motion differences but without runs.
   [[nodiscard]] ScenarioRecord record_of(const Subject& subject, const std::vector<Scratch>& motions) const {
     ScenarioRecord record = store_.new_record(subject.scenario);
     record.mesh = subject.mesh;
@@ -239,7 +239,7 @@ class Study {
     return record;
   }
 
-  /// Compares the motions with the first order's; keeps the latter and the obstacles for the page.
+  /// Compares the motions with that of the first order; keeps that motion and the obstacles for the page.
   void compare_motions(const Subject& subject, const std::vector<Scratch>& motions,
                        ScenarioRecord& record) const {
     const StudyFolder& folder = store_.folder();

@@ -12,7 +12,8 @@ namespace meshorder {
 
 /// Callbacks of a study.
 struct StudyObserver {
-  /// Called when a stage begins or advances; the rest of the stage is `from` … `to` of the whole, 0 … 1.
+  /// Called when a stage begins or advances: share `from` of the study is done, the stage ends at `to`, 0
+  /// … 1.
   std::function<void(const std::string& what, double from, double to)> stage = [](auto&&...) {};
   std::function<void(const std::string& message)> note = [](auto&&...) {};
   /// Called after each mesh and each turn. If it returns true, the study stops and loses its unfinished runs.
@@ -24,7 +25,7 @@ struct StudyObserver {
 ///
 /// The orders of a mesh are computed once. In each run of a scenario, every order has a fresh process of
 /// `program`, which is meshorder-lab, on the same processors and, where possible, without address space
-/// randomisation. The processes take turns of about a second. In each run, another order begins, so that
+/// randomisation. The processes take turns of about a second. Each run begins with another order, so that
 /// changes of the machine's speed affect all orders alike. If memory cannot hold all orders, they run one
 /// after another. The first run stores frames of the motion and compares them between the orders.
 ///

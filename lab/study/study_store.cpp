@@ -42,7 +42,7 @@ StudyStore::StudyStore(const StudyPlan& plan, const StudyFolder& folder) : folde
   (void)output_place(folder.file(folder.mesh("any")));  // refuses a link before a folder is made through it
   make_folders(folder);
   lock_.emplace(folder.root());
-  (void)OutputFile(folder.file(folder.mesh("any")));  // fail before the work if it cannot be written
+  (void)OutputFile(folder.file(folder.mesh("any")));  // throws early if the folder cannot be written
   MachineRecord machine = describe_machine();
   std::error_code code;
   if (fs::exists(folder.results(), code)) {

@@ -21,7 +21,7 @@ constexpr Index kMinSteps = 8;
 /// Memory of a process relative to its body: the process also holds the mesh and what the body was made from.
 constexpr double kProcessBytesOfBody = 2.5;
 
-/// Returns the memory available to new processes; unlimited if the system does not report it.
+/// Returns the bytes available to new processes; unlimited if the system does not report them.
 double available_bytes() {
   std::ifstream in("/proc/meminfo");
   for (std::string key, unit; in >> key;) {

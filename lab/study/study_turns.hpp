@@ -20,7 +20,7 @@ struct TurnPlan {
   bool interleaved = true;  ///< all orders are in memory and take turns
 };
 
-/// Plans:
+/// Returns a plan with:
 /// - turns of about a second, but at least eight turns if there are enough steps;
 /// - about 48 frames, fewer if their file would exceed 256 MB;
 /// - all orders at once if free memory holds them.

@@ -23,7 +23,7 @@ std::string reason(std::string what) {
   return what;
 }
 
-/// Refuses a key that occurs twice in an object; the parser would keep the last.
+/// Parser callback that refuses a key that an object has twice; the parser would keep the last value.
 class UniqueKeys {
  public:
   explicit UniqueKeys(std::string file) : file_(std::move(file)) {}
@@ -43,7 +43,7 @@ class UniqueKeys {
   std::vector<std::set<std::string>> keys_;
 };
 
-/// Most characters of an object or list that is written in one line.
+/// Objects and lists of at most this many characters are written in one line.
 constexpr std::size_t kShort = 100;
 
 bool is_list_of_plain_values(const nlohmann::ordered_json& json) {

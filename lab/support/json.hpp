@@ -61,7 +61,7 @@ class JsonValue {
   }
 
   // ---- objects
-  /// Throws unless this is an object and `known` has all its keys.
+  /// Throws unless this is an object and all its keys are in `known`.
   void expect_keys(std::initializer_list<std::string_view> known) const;
   void expect_keys(std::span<const std::string_view> known) const;
   [[nodiscard]] bool has(std::string_view key) const { return value_->contains(key); }
@@ -78,7 +78,7 @@ class JsonValue {
   // ---- plain values
   [[nodiscard]] bool is_null() const noexcept { return value_->is_null(); }
   [[nodiscard]] bool is_text() const noexcept { return value_->is_string(); }
-  /// Returns a text. Throws if it is empty.
+  /// Returns a text. Throws for another value or an empty text.
   [[nodiscard]] std::string text() const;
   /// Returns a text, which may be empty.
   [[nodiscard]] std::string any_text() const;
@@ -121,7 +121,7 @@ class JsonValue {
 /// with a line break. O(size · depth).
 std::string json_text(const nlohmann::ordered_json& json);
 
-/// Writes json_text to a file, completely or not at all. Throws Error if it cannot be written.
+/// Writes json_text to a file, completely or not at all. Throws Error if the file cannot be written.
 void write_json(const nlohmann::ordered_json& json, const FilePath& path);
 
 }  // namespace meshorder

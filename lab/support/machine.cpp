@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kPasses = 8;
 
-/// Returns the bytes to read: several times the last cache, but not so many that a small machine swaps.
+/// Returns four times the last cache's bytes, from 256 MiB to 1 GiB, but at most an eighth of the memory.
 std::size_t buffer_bytes(const MachineRecord& machine) {
   constexpr std::size_t kMin = std::size_t{256} << 20;
   constexpr std::size_t kMax = std::size_t{1} << 30;

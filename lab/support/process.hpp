@@ -39,7 +39,7 @@ class ChildProcess {
   /// Sends bytes. Throws Error if the child has ended.
   void send_bytes(std::span<const std::byte> bytes);
 
-  /// Waits until `bytes` is filled. Throws Error, which says how the child ended, if it ends before that.
+  /// Waits until `bytes` is filled. Throws Error, which says how the child ended, if the child ends earlier.
   void receive_bytes(std::span<std::byte> bytes);
 
  private:
@@ -51,7 +51,7 @@ class ChildProcess {
   std::FILE* replies_ = nullptr;
 };
 
-/// Returns whether this process was started with fixed addresses.
+/// Returns whether address space randomisation is off.
 bool has_fixed_addresses();
 
 /// Returns the program of that name in the running program's folder, else on PATH; empty if there is no such

@@ -92,7 +92,7 @@ class System {
     dolfinx::fem::assemble_vector(std::span(right_), linear_);
   }
 
-  /// Solves by conjugate gradients without a preconditioner; returns the iterations.
+  /// Solves by conjugate gradients without a preconditioner; returns the number of iterations.
   int solve(std::vector<double>& u, double tolerance) const {
     const auto dot = [](const std::vector<double>& a, const std::vector<double>& b) {
       double sum = 0;

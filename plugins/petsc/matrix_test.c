@@ -98,7 +98,7 @@ static PetscErrorCode TestBlocks(MatType type, PetscInt block) {
 }
 
 /* Solves a system by PETSc's factors in that order and checks the solution. `fill` is the number of entries
- * in the factors divided by that in the matrix. */
+ * in the factors divided by the number in the matrix. */
 static PetscErrorCode Solve(Mat matrix, PCType type, const char* ordering, PetscReal* fill) {
   KSP solver;
   PC preconditioner;

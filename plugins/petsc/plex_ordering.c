@@ -112,7 +112,7 @@ static PetscErrorCode OrderCells(DM dm, PetscInt begin, PetscInt end, PetscInt f
   PetscFunctionReturn(0);
 }
 
-/* Numbers all points: cells in their order, then the points of each lower depth as the points above meet
+/* Numbers all points: cells in their order, then the points of each lower depth as points above first meet
  * them.
  */
 static PetscErrorCode NumberPoints(DM dm, PetscInt begin, PetscInt end, PetscInt cell_count,

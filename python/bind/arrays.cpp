@@ -13,7 +13,7 @@ bool holds(const nb::dlpack::dtype& type) {
   return type == nb::dtype<Number>();
 }
 
-/// Returns a view of the array's numbers, whose type must be one of `Numbers`. Throws InvalidArgument.
+/// Returns a view of the array's numbers. Throws InvalidArgument unless their type is in `Numbers`.
 template <class View, class... Numbers, class Data>
 View viewed(const nb::dlpack::dtype& type, Data* data, std::size_t size, const char* wanted) {
   View view;

@@ -16,8 +16,8 @@ namespace meshorder::python {
 
 namespace nb = nanobind;
 
-/// An array of the caller's, of any type and rank, row after row in the memory of the CPU. The Python half of
-/// the module converts all other arrays to this form (meshorder/_arrays.py).
+/// The caller's array, of any type and rank, row after row in the memory of the CPU. The Python half of the
+/// module converts all other arrays to this form (meshorder/_arrays.py).
 using Array = nb::ndarray<nb::ro, nb::c_contig, nb::device::cpu>;
 using MutableArray = nb::ndarray<nb::c_contig, nb::device::cpu>;
 
@@ -28,9 +28,9 @@ using Result = nb::ndarray<nb::numpy, const T, nb::ndim<1>>;
 /// Returns a view of integers of 32 or 64 bits, of any rank. Throws InvalidArgument for other types.
 IndexView index_view(const Array& array);
 IndexSpan index_span(const MutableArray& array);
-/// Returns a view of float or double numbers; throws likewise.
+/// Returns a view of float or double numbers. Throws InvalidArgument for other types.
 RealView real_view(const Array& array);
-/// Returns a view of points, whose rows have one to three coordinates, float or double. Throws likewise.
+/// Returns a view of points: rows of one to three coordinates, float or double. Throws likewise.
 PointsView points_view(const nb::ndarray<nb::ro, nb::device::cpu>& array);
 
 /// Moves a vector to an array that Python owns, without a copy.

@@ -28,7 +28,7 @@ using Mixed = std::tuple<Array, Array, std::optional<Array>>;
 using GivenCells = std::variant<Blocks, Mixed>;
 using GivenPoints = std::optional<nb::ndarray<nb::ro, nb::device::cpu>>;
 
-/// Returns a view of the arrays, which must outlive it. Throws InvalidArgument for unknown shapes.
+/// Returns a view; the arrays must outlive it. Throws InvalidArgument for unknown shapes.
 MeshView mesh_view(const GivenPoints& points, const GivenCells& cells, std::size_t vertex_count);
 
 }  // namespace meshorder::python

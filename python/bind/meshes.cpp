@@ -239,7 +239,6 @@ void add_properties(nb::class_<Mesh>& mesh) {
       });
 }
 
-/// Adds the methods of the class.
 void add_methods(nb::class_<Mesh>& mesh) {
   mesh.def("add_data", [](Mesh& self, const std::string& name, bool of_vertices,
                           const Array& values) { self.data.push_back(array_of(name, of_vertices, values)); })

@@ -24,7 +24,7 @@ std::thread::id ending_thread;  // set before `interpreter_ends`
   while (true) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
-/// Returns whether an object is Python's False or NumPy's, which comparisons of NumPy's numbers return.
+/// Returns whether an object is Python's or NumPy's False; the latter results from comparing NumPy's numbers.
 bool is_false(const nb::object& answer) {
   const std::string_view type = Py_TYPE(answer.ptr())->tp_name;  // numpy.bool_ before NumPy 2
   return answer.is(Py_False) ||

@@ -30,7 +30,7 @@ class Options {
 /// interpreter, which may be gone, and an exception there would be written to a closed file.
 class UnlockedCall {
  public:
-  /// If the interpreter ends: throws Stopped in the thread that ends it, and does not return in others.
+  /// If the interpreter ends: throws Stopped in the thread that ends it, and never returns in others.
   UnlockedCall();
   UnlockedCall(const UnlockedCall&) = delete;
   UnlockedCall(UnlockedCall&&) = delete;

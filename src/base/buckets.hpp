@@ -67,7 +67,8 @@ class Buckets {
   /// Returns the smallest key that the bucket may have.
   [[nodiscard]] Index first_key(Index bucket) const { return bucket << log2_width_; }
 
-  /// Returns where each key of the bucket begins among all sorted entries, and the end of the last key.
+  /// Returns where the entries of each key of the bucket begin among all sorted entries, and the end of the
+  /// last ones.
   template <class Key>
   [[nodiscard]] std::vector<Offset> key_starts(Index bucket, const Key& key) const {
     std::vector<Offset> starts(std::size_t(std::min(width(), keys_ - first_key(bucket))) + 1, 0);

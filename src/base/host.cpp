@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns the keys and values of the first processor in Linux's /proc/cpuinfo.
+/// Returns the keys and values of the first processor in the text of Linux's /proc/cpuinfo.
 std::map<std::string, std::string> facts_of_first_processor(std::istream& cpuinfo) {
   std::map<std::string, std::string> facts;
   for (std::string line; std::getline(cpuinfo, line);) {

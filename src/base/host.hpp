@@ -7,22 +7,22 @@
 
 namespace meshorder {
 
-/// Returns the name of the first processor in Linux's /proc/cpuinfo. For ARM processors, which have only
-/// numbers there: "aarch64 processor, implementer 0x41, part 0xd0c". If the file has neither name nor
-/// numbers: "`architecture` processor".
+/// Returns the name of the first processor in `cpuinfo`, the text of Linux's /proc/cpuinfo. For ARM
+/// processors, which have only two numbers there: "aarch64 processor, implementer 0x41, part 0xd0c". Without
+/// a name or both numbers: "`architecture` processor".
 std::string processor_name(std::istream& cpuinfo, const std::string& architecture);
 
 /// Returns `processor_name` of this machine.
 std::string processor_of_this_machine();
 
-/// The family of an x86 processor, as CPUID numbers it; −1 on other processors.
+/// The family and model of an x86 processor, as CPUID numbers them; −1 on other processors.
 struct ProcessorFamily {
   std::string maker;  ///< "AuthenticAMD"; empty on other processors
   int family = -1;
   int model = -1;
 };
 
-/// Returns the family of the first processor in Linux's /proc/cpuinfo.
+/// Returns the family of the first processor in `cpuinfo`, the text of Linux's /proc/cpuinfo.
 ProcessorFamily processor_family(std::istream& cpuinfo);
 
 /// Returns the family of this machine's processor.

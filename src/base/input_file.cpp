@@ -36,7 +36,8 @@ int opened_at(int folder, const char* name, int flags) {
   return result;
 }
 
-/// Opens an absolute path; fails if a component is a link. Returns −1 and sets errno on failure.
+/// Opens an absolute path for reading. Returns −1 with errno for a link in the path, a device or a socket, or
+/// another failure.
 int opened_without_links(const fs::path& path) {
   int folder = opened_at(AT_FDCWD, "/", kPassing);
   const fs::path below = path.relative_path();
@@ -129,7 +130,8 @@ void InputFile::fail(int error) const {
                    "check the path and the disk");
 }
 
-/// Checks the type of the opened file, which may have been replaced meanwhile, and stores its size.
+/// Checks the type of the opened file, because another file may have replaced the one checked before.
+/// Stores the size of a regular file; waits for the writer of a pipe.
 void InputFile::require_readable() {
   struct stat status {};
   if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) fail(errno);
@@ -142,8 +144,8 @@ void InputFile::require_readable() {
   if (S_ISFIFO(status.st_mode)) wait_for_writer();
 }
 
-/// Waits up to three seconds for a writer of a pipe. A byte, a hang-up or EAGAIN shows that the pipe has had
-/// one. Later reads block.
+/// Waits up to three seconds for a writer of the pipe: a byte, a hang-up or EAGAIN shows that the pipe has or
+/// had a writer. Later reads block. Throws InputError if no writer comes.
 void InputFile::wait_for_writer() {
   constexpr int kTurns = 300;
   constexpr int kMilliseconds = 10;

@@ -29,7 +29,7 @@ MemoryLimit memory_limit();
 /// Sets the limit for the rest of the process. Must not be called while other threads read or order.
 void set_memory_limit(std::uint64_t bytes);
 
-/// Returns the product, or UINT64_MAX if it overflows.
+/// Returns count · bytes_each, or UINT64_MAX if the product overflows.
 constexpr std::uint64_t bytes_for(std::uint64_t count, std::uint64_t bytes_each) {
   return bytes_each != 0 && count > UINT64_MAX / bytes_each ? UINT64_MAX : count * bytes_each;
 }
@@ -47,9 +47,8 @@ std::optional<std::uint64_t> parse_size(std::string_view text);
 /// Returns a size as text, such as "64 GiB", "1.5 MiB" or "555 bytes".
 std::string size_text(std::uint64_t bytes);
 
-/// Asks the system for large pages under memory that is about to be filled, as NumPy does for its arrays: one
-/// page fault for 2 MiB instead of 512. A hint, without effect on smaller blocks and on systems other than
-/// Linux.
+/// Asks the system for large pages under memory that is about to be filled, as NumPy does: 2 MiB then cost
+/// one page fault instead of 512. A hint, without effect on smaller blocks and on systems other than Linux.
 void ask_for_large_pages(void* memory, std::size_t bytes) noexcept;
 
 /// Clears the pages of memory that is about to be filled, on all threads; otherwise one thread would clear

@@ -70,7 +70,7 @@ void for_each_chunk(Index n, Index size, Work work) {
 /// longest turns should come first. Meant for few turns that take a millisecond or more. Each turn calls
 /// `poll` first.
 ///
-/// @throws as `parallel_loop`; turns that have not begun are then skipped
+/// @throws as `parallel_loop`; after an exception, no further turn begins
 template <class Work>
 void take_turns(Index n, const Work& work) {
   std::atomic<Index> next = 0;
@@ -87,8 +87,8 @@ void take_turns(Index n, const Work& work) {
   });
 }
 
-/// Returns the sum of `part(begin, end)` over the chunks, added in their order: the same for any number of
-/// threads. `Sum{}` must be zero, and `Sum` needs +=.
+/// Returns the sum of `part(begin, end)` over the chunks of `size`, added in ascending order: the same for
+/// any number of threads. `Sum{}` must be zero, and `Sum` needs +=.
 template <class Sum, class Part>
 Sum sum_over_chunks(Index n, Index size, Part part) {
   std::vector<Sum> parts(chunk_count(n, size));

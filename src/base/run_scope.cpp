@@ -51,7 +51,7 @@ void RunScope::tell() {
   const double seconds = std::chrono::duration<double>(now - start_).count();
   const OutsideOfCalls outside;
   if (!run_.progress({.stage = stage_, .fraction = fraction_, .seconds = seconds})) throw Stopped();
-  // not `now`: after a slow callback it is out of date, and every poll would call back again
+  // not `now`, which is out of date after a slow callback: every poll would then call back again
   told_ = std::chrono::steady_clock::now();
 }
 

@@ -13,8 +13,9 @@ namespace meshorder {
 ///
 /// The scope belongs to the thread that made the call. On other threads `poll` only checks whether their loop
 /// is cancelled, so the loops of base/parallel.hpp call `poll` in every turn: the calling thread takes turns
-/// too, and an exception there cancels the loop on all threads. A call within a call (by a user's own method)
-/// belongs to the outer call unless the `Run` of the inner call has a progress function or a time limit.
+/// too, and an exception on that thread cancels the loop on all threads. A call within a call (by a user's
+/// own method) belongs to the outer call unless the `Run` of the inner call has a progress function or a time
+/// limit.
 class RunScope {
  public:
   explicit RunScope(const Run& run);
@@ -51,7 +52,7 @@ void report(std::string_view stage, double fraction = -1);
 /// @throws as `report`; Stopped on a helping thread whose loop is cancelled
 void poll();
 
-/// Like `poll`, in every 1024th turn of a loop of short turns.
+/// Calls `poll` in every 1024th turn of a loop with short turns.
 template <class Turn>
 void poll_in_loop(Turn turn) {
   if (turn % 1024 == 0) poll();

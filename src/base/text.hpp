@@ -38,7 +38,7 @@ std::string join(const Items& items, TextOf text_of, std::string_view separator 
   return result;
 }
 
-/// Returns the texts as one, separated by `separator`.
+/// Returns the texts as one text, separated by `separator`.
 template <class Texts>
 std::string join(const Texts& texts, std::string_view separator = ", ") {
   return join(

@@ -252,7 +252,7 @@ using namespace meshorder;
 
 void mo_options_init(mo_options* options, size_t struct_size) {
   if (options == nullptr || struct_size < sizeof(std::size_t)) return;
-  // fields that a newer header adds become 0
+  // sets to 0 the fields that only the caller's newer header has
   if (struct_size <= c::kLargestStruct) std::memset(static_cast<void*>(options), 0, struct_size);
   c::copy_options(c::default_options(), *options, struct_size);
   options->struct_size = struct_size;

@@ -61,7 +61,7 @@ void check_result(const mo_result* result) {
   if (result != nullptr) check_struct_size(result->struct_size, "result");
 }
 
-/// Writes the fields of a report that the caller's structure has.
+/// Writes those fields of a report for which the caller's structure has room.
 void write_report(const mo_result& report, mo_result* result) {
   if (result == nullptr) return;
   copy_fields(report, *result, result->struct_size, &mo_result::complete, &mo_result::components,

@@ -74,7 +74,7 @@ std::size_t cache_of(std::int64_t bytes) {
   return bytes == 0 ? kGpuCacheBytes : static_cast<std::size_t>(bytes);
 }
 
-/// Writes the counts that the caller's structure has.
+/// Writes those counts for which the caller's structure has room.
 void write_counts(const GpuCost& cost, mo_gpu_counts* counts) {
   mo_gpu_counts all{};
   all.requests = cost.requests;

@@ -65,7 +65,7 @@ struct NamedOption {
   std::string value;
 };
 
-/// Returns the options on which the order depends, which all ranks must share.
+/// Returns the options that the order depends on and that must be the same on all ranks.
 std::array<NamedOption, 6> in_words(const DistributedOptions& options) {
   return {
       {{"method", options.vertices},
@@ -173,8 +173,10 @@ OwnedMesh mesh_of(const Communicator& communicator, const mo_mpi_mesh* given) {
   return mesh;
 }
 
-/// Writes numbers to the caller's array, unless it is null. With `wanted`, the array's name, throws on all
-/// ranks if one has numbers but a null array.
+/// Writes numbers to the caller's array; does nothing if the array is null.
+///
+/// @param wanted  name of the array if it is required: a rank with numbers but a null array then makes all
+///                ranks throw. Null: the array is optional
 void write(const Communicator& communicator, const std::vector<GlobalIndex>& numbers, std::int64_t* to,
            const char* wanted = nullptr) {
   communicator.together([&] {

@@ -17,7 +17,7 @@ class CacheWindows {
 
   /// @param array_bytes  size of the array of records
   /// @param alike        number of arrays of this size; `touch` reads the same record of each; ≥ 1
-  /// @param cache_bytes  ≥ 1
+  /// @param cache_bytes  size of the cache, ≥ 1
   CacheWindows(Offset array_bytes, int alike, Offset cache_bytes)
       : window_of_(static_cast<std::size_t>(array_bytes / kSectorBytes) + 1, -1),
         fetch_(alike * kSectorBytes),
@@ -32,7 +32,7 @@ class CacheWindows {
     filled_ = 0;
   }
 
-  /// Reads record `number` of an array of records of `size` bytes, 1 … 32. O(1).
+  /// Reads record `number` of each array; a record has `size` bytes, 1 … 32. O(1).
   void touch(Offset number, int size) {
     const Offset first = number * size / kSectorBytes;
     const Offset last = (number * size + size - 1) / kSectorBytes;
@@ -51,7 +51,7 @@ class CacheWindows {
     stream(fetch_);
   }
 
-  std::vector<Index> window_of_;  ///< the last window in which each sector was fetched; −1: none
+  std::vector<Index> window_of_;  ///< the latest window in which each sector was fetched; −1: none
   Offset fetch_;
   Offset cache_bytes_;
   Index window_ = 0;

@@ -16,7 +16,7 @@ namespace meshorder {
 /// The cells of a view in the library's own types, numbered from 0. Refers to the caller's arrays that have
 /// these types already, and holds converted copies of the caller's other arrays.
 ///
-/// Movable, not copyable: the spans refer to the caller's arrays or to the own ones.
+/// Movable, not copyable: the spans refer to the caller's arrays or to the `own_` arrays.
 struct CellArrays {
   CellArrays() = default;
   CellArrays(CellArrays&&) = default;
@@ -64,7 +64,7 @@ std::set<int> cell_widths(Shape shape);
 /// @note O(entries), on all threads of the arena.
 CellArrays cell_arrays(const CellsView& view, std::size_t vertex_count, Check check);
 
-/// Returns the number of vertices that each cell has; 0 without cells. O(cells).
+/// Returns the number of vertices that each cell has; 0 if there are no cells. O(cells).
 ///
 /// @throws InvalidArgument if numbers or shapes differ between cells; the message begins with `caller`
 int uniform_width(const CellArrays& cells, const char* caller);

@@ -30,11 +30,11 @@ class FacetsOfTypes {
 /// places.
 std::array<Index, 4> sorted_corners(std::span<const Index> cell, const std::vector<int>& positions);
 
-/// Sorts facets so that those with the same corners are adjacent, in ascending order of their elements.
+/// Returns the facets, sorted so that those with the same corners are adjacent and ascend by element.
 /// `vertex_count` exceeds every corner. O(facets · log facets at a vertex).
 std::vector<ElementFacet> matched_facets(const std::vector<ElementFacet>& facets, Index vertex_count);
 
-/// Returns the facets of elements, sorted in this way.
+/// Returns the facets of elements, sorted as above.
 ///
 /// @throws InvalidArgument if the shapes of cells are not known
 std::vector<ElementFacet> matched_facets(const CellArrays& cells, const CellSelection& elements);

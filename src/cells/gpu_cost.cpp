@@ -40,7 +40,7 @@ constexpr Offset kPackedBytes = 12;        // three numbers side by side
 constexpr Offset kContributionBytes = 16;  // a cell's contribution to a corner
 constexpr Offset kSector = CacheWindows::kSectorBytes;
 
-/// Returns the bytes of the offsets of n lists.
+/// Returns the size in bytes of the offsets of n lists.
 Offset bytes_of_offsets(Offset n) { return n > 0 ? kIndexBytes * (n + 1) : 0; }
 
 Offset sectors_of(Offset bytes) { return (bytes + kSector - 1) / kSector; }
@@ -87,7 +87,7 @@ Offset used_vertices(const CellArrays& cells) {
   return std::ranges::count(is_used, 1);
 }
 
-/// Sets the bytes of `cost` for a pass over cells that reads vertices' numbers and adds to another array.
+/// Sets `dram_bytes` and `dram_floor`: a pass over cells reads a record of each corner and adds to another.
 void count_bytes(GpuCost& cost, const CellArrays& cells, GpuLayout layout, Offset cache_bytes) {
   const int arrays = layout == GpuLayout::apart ? 3 : 1;
   const int record = static_cast<int>(layout == GpuLayout::apart    ? kFloatBytes

@@ -28,7 +28,7 @@ void deal_out(Index begin, Index end, const Work& work) {
   const Index in_last = end - begin - (warps - 1) * kWarp;
   for (Index warp = 0; warp < warps; ++warp) {
     const Index threads = warp + 1 < warps ? kWarp : in_last;
-    // the last warp may lack threads; their series are one cell shorter
+    // series of threads that the last warp lacks are one cell shorter
     for (Index thread = 0; thread < threads; ++thread)
       work(begin + thread * warps - std::max(thread - in_last, 0) + warp);
   }

@@ -162,7 +162,7 @@ class FewFaces {
   std::span<const PolyhedronFace> faces_;
   std::array<FaceEdge, kMostFaces * kMostCorners> edges_{};
   std::size_t edge_count_ = 0;
-  std::array<bool, kMostFaces> is_turned_{};  ///< `is_inward` of each face, derived from the first
+  std::array<bool, kMostFaces> is_turned_{};  ///< for each face, the `is_inward` that fits the first face's
 };
 
 }  // namespace

@@ -37,8 +37,9 @@ void for_each_piece(Shape shape, std::span<const Number> cell, const Call& call)
   }
 }
 
-/// Returns the graph that joins any two vertices of an element (the paper, section 3), or of a piece of it if
-/// `is_joined_by_pieces`. Cells of lower dimension join nothing. O(sum of piece sizes squared · log degree).
+/// Returns the graph that joins any two vertices of an element (the paper, section 3), or of a piece of the
+/// element if `is_joined_by_pieces`. Cells of lower dimension join nothing. O(sum of piece sizes squared ·
+/// log degree).
 ///
 /// @throws TooLarge as `joined_vertices`
 CsrGraph vertex_graph(const CellArrays& cells);

@@ -15,7 +15,7 @@ constexpr int kSectorBytes = 32;
 constexpr int kNumberBytes = 4;
 constexpr Index kWarpsInChunk = 512;
 
-/// How the additions of a thread to a vertex lie in memory.
+/// The places in memory of a thread's additions to a vertex.
 struct Additions {
   int record_bytes;  ///< bytes from the record of one vertex to the next
   int count;         ///< number of additions to adjacent numbers of the record
@@ -33,8 +33,8 @@ Additions additions_of(GpuLayout layout) {
   }
 }
 
-/// Returns the sectors of one addition by the threads of a warp to their vertices. A sector counts t times,
-/// where t is the largest number of threads that add to the same vertex in it.
+/// Returns the number of sectors that a warp's threads touch when each adds one number to its vertex. A
+/// sector counts t times, where t is the largest number of threads that add to the same vertex in it.
 Offset sectors_of_addition(std::span<const Index> ascending, int record_bytes, int first_byte) {
   Offset sectors = 0;
   Offset sector = -1;
@@ -54,7 +54,7 @@ Offset sectors_of_addition(std::span<const Index> ascending, int record_bytes, i
   return sectors + most;
 }
 
-/// Returns the sectors of all additions by the threads of a warp to their vertices.
+/// Returns the same number for all additions of a warp's threads.
 Offset sectors_of_additions(std::span<const Index> ascending, const Additions& additions) {
   Offset sectors = 0;
   for (int k = 0; k < additions.count; ++k) {
@@ -120,7 +120,7 @@ class WarpLoop {
   struct Thread {
     Offset next = 0;   ///< index of the next entry
     Offset left = 0;   ///< number of entries not yet read
-    Offset first = 0;  ///< number of entries to read one by one, first
+    Offset first = 0;  ///< number of entries to read one by one at the beginning
   };
 
   std::span<Thread> threads() { return std::span(threads_).first(size_); }

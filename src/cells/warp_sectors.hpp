@@ -72,11 +72,11 @@ struct RecordLists {
 /// @param lanes  threads of each list: 1, 2, 4, 8, 16 or 32
 ListLoads loads_of_lists(const RecordLists& lists, int lanes);
 
-/// Returns how many sectors of the vector (4 bytes a number) a matrix-vector product reads with one thread
-/// for each row, counted as by `loads_of_lists`. The matrix has a diagonal. O(entries of the counted rows ·
-/// log degree) time.
+/// Returns the number of sectors of the vector (4 bytes a number) that a matrix-vector product with one
+/// thread per row reads, counted as by `loads_of_lists`. The matrix has a diagonal. O(entries of the counted
+/// rows · log degree) time.
 ///
-/// @param order   of rows and columns
+/// @param order   order of the rows and columns
 /// @param stride  only every stride-th warp is counted, ≥ 1
 Offset sectors_of_product(GraphRef graph, const Permutation& order, Index stride = 1);
 

@@ -11,7 +11,7 @@ namespace meshorder {
 inline namespace v0_3 {
 namespace {
 
-/// Throws if a graph, whose entries must be in range, is asymmetric without its repeats and loops. Compares
+/// Throws if the graph without its repeats and loops is asymmetric; all entries must be in range. Compares
 /// the clean rows, because asymmetric repeats alone also make the hash nonzero.
 void refuse_asymmetry_of(const GraphView& view, const GraphArrays& graph, const GraphFindings& findings) {
   if (findings.asymmetry == 0) return;

@@ -18,8 +18,8 @@ struct OwnedGraph {
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
 };
 
-/// Makes a caller's graph clean: ascending rows, no loops, no repeats, every edge in both rows. Makes no copy
-/// of arrays that are clean already and have the library's types; otherwise `notes` report what was done.
+/// Returns a clean form of a caller's graph: ascending rows, no loops, no repeats, every edge in the rows of
+/// both ends. Copies no arrays that are clean and of the library's types; `notes` report what was changed.
 ///
 /// @param check     full, fast: see `Check`; fast mirrors an asymmetric pattern. none: only converts types,
 ///                  unless `symmetry` is mirror

@@ -57,7 +57,7 @@ CsrGraph graph_from_edges(Index n, std::span<const Edge> edges);
 CsrGraph renumbered(GraphRef graph, std::span<const Index> old_to_new);
 
 /// Returns the subgraph of the listed vertices (each once): vertex k of the result is `vertices[k]`. Edges
-/// that leave the list are dropped. O(n of `graph` + entries of the listed rows · log degree).
+/// to other vertices are dropped. O(n of `graph` + entries of the listed rows · log degree).
 CsrGraph induced_subgraph(GraphRef graph, std::span<const Index> vertices);
 
 /// Sorts every row of compressed sparse rows, drops repeats, drops loops unless `keeps_loops`, and closes the

@@ -14,7 +14,7 @@ namespace meshorder {
 /// all members of each row.
 inline constexpr std::size_t kManyJoined = 64;
 
-/// Bytes that ordering takes at most for each entry of such a graph, with the graph and its copies.
+/// Most bytes that ordering takes for each entry of such a graph, including the graph and its copies.
 inline constexpr std::uint64_t kBytesToOrder = 24;
 
 /// Limits the memory of each graph that this process makes from long rows, including data computed from the
@@ -29,7 +29,7 @@ struct JoinNames {
   const char* row = "cell";
   const char* members = "vertices";
   const char* remedy = "cut such cells";
-  std::function<Index(Index)> number_of = {};  ///< returns the number that names a row; empty: its place
+  std::function<Index(Index)> number_of = {};  ///< returns a row's number; empty: use the row's place
 };
 
 /// Like `joined_vertices`, with other words in the message of TooLarge.

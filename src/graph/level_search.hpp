@@ -40,7 +40,7 @@ class LevelSearch {
  private:
   static constexpr Index kNotFound = std::numeric_limits<Index>::min();
 
-  /// A vertex, and the mark of the row that has it.
+  /// A vertex, and the mark of the row in which a thread found the vertex.
   struct Finding {
     Index vertex;
     Index mark;

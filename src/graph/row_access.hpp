@@ -34,7 +34,7 @@ namespace meshorder {
   prefetch_entries(graph.neighbours.data() + graph.offsets[order[k + std::min(kRowAhead, last - k)]]);
 }
 
-/// Like `prefetch_row`, and prefetches `numbers[u]` of the neighbours u in the row 6 places ahead.
+/// Like the other `prefetch_row`; also prefetches `numbers[u]` for the entries u of the row 6 places ahead.
 [[gnu::always_inline]] inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k,
                                                 const Index* numbers) {
   constexpr Index kNumbersAhead = 6;

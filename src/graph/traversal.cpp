@@ -172,7 +172,7 @@ BreadthFirstCopy copy_on_threads(GraphRef graph) {
 
 BreadthFirstCopy breadth_first_copy(GraphRef graph) {
   constexpr Index kSmall = 1 << 15;
-  constexpr Index kFew = 2;  // so few threads gain less than reading each row twice costs
+  constexpr Index kFew = 2;  // with so few threads, one pass is faster than two
   const bool is_shared = thread_count() > kFew && graph.size() >= kSmall;
   BreadthFirstCopy copy = is_shared ? copy_on_threads(graph) : copy_in_one_pass(graph);
   std::stable_sort(copy.components.begin(), copy.components.end(),

@@ -24,7 +24,7 @@ Format obj_format();
 Format ply_format();
 Format stl_format();
 Format su2_format();            ///< .su2
-Format xdmf_format();           ///< .xdmf with .h5 beside it; only in builds with HDF5
+Format xdmf_format();           ///< .xdmf with .h5 beside it; only in builds with HDF5 and pugixml
 Format med_format();            ///< .med of Salome and Code_Aster; only in builds with HDF5
 Format abaqus_format();         ///< .inp of Abaqus and CalculiX
 Format ucd_format();            ///< .avs, .ucd, and .inp files that are not Abaqus decks

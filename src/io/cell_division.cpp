@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the labels of the cells; empty if some need 64 bits and `with_wide_ones` is false.
+/// Returns the cells' labels; empty if any label needs 64 bits and `with_wide_ones` is false.
 std::vector<std::int64_t> usable_labels(const Mesh& mesh, bool with_wide_ones) {
   Labels labels = labels_of(mesh, Association::cells);
   const bool are_usable = with_wide_ones || fit_32_bits(labels.values);
@@ -36,8 +36,8 @@ std::vector<std::int64_t> sets_of_cells(const Mesh& mesh) {
   return result;
 }
 
-/// Divides the cells by type and, unless `values` is empty, by each cell's value. Returns false if the values
-/// give more than kMostBlocks blocks.
+/// Divides the cells by type and by value (`values`, one per cell; if empty, by type only). Returns false if
+/// the values give more than kMostBlocks blocks.
 bool divide_by(const Mesh& mesh, const std::vector<std::int64_t>& values, CellDivision& division) {
   std::map<std::tuple<std::int64_t, Shape, int>, Index> known;
   std::tuple<std::int64_t, Shape, int> last;

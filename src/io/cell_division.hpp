@@ -10,7 +10,7 @@
 
 namespace meshorder {
 
-/// A block: cells of one type and one label, which follow one another in a file.
+/// A block: cells of one type and one label or set, which follow one another in a file.
 struct CellPart {
   Index first = 0;  ///< first cell
   Index count = 0;  ///< number of cells
@@ -30,7 +30,7 @@ struct CellDivision {
   std::vector<CellPart> keys;      ///< the blocks, ascending by `first`
 };
 
-/// What divides the cells into blocks besides their types and 32-bit labels.
+/// Options of `divide_cells`: what divides the cells besides types and 32-bit labels.
 struct DividedBy {
   bool sets = false;         ///< sets of cells, if there are no labels to use
   bool wide_labels = false;  ///< labels of 64 bits
@@ -39,8 +39,8 @@ struct DividedBy {
 /// Returns the division of a mesh. O(cells · log blocks).
 CellDivision divide_cells(const Mesh& mesh, DividedBy divided_by);
 
-/// Returns the permutation of cells that puts the blocks one after another, those of the highest dimension
-/// first. `blocks` receives the new position of the first cell of each block. O(cells).
+/// Returns the permutation of cells that makes each block contiguous; blocks of higher dimension come first.
+/// `blocks` receives the new position of each block's first cell. O(cells).
 Permutation places_by_division(const CellDivision& division, std::vector<Index>& blocks);
 
 }  // namespace meshorder

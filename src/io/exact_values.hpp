@@ -16,7 +16,7 @@
 namespace meshorder {
 
 /// Returns whether the type `To` can hold a number exactly. Only real types hold NaN and infinity. A real
-/// type holds integers up to ±2^(its digits).
+/// type holds integers up to ±2^(bits of its significand).
 template <class To, class From>
 bool is_exact(From value) {
   constexpr int kDigits = std::numeric_limits<To>::digits;
@@ -37,7 +37,8 @@ bool is_exact(From value) {
   }
 }
 
-/// Returns whether `To` can hold all values exactly; false for texts. O(values), O(1) if `To` is their type.
+/// Returns whether `To` can hold all values exactly; false for texts. O(1) if the values are of type `To`,
+/// else O(values).
 template <class To>
 bool are_exact(const Values& values) {
   return with_numbers(values, []<class From>(const std::vector<From>& all) {

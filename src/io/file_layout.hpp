@@ -34,7 +34,7 @@ struct FilePart {
   [[nodiscard]] std::int64_t size() const { return rows * row_size(); }
 };
 
-/// Sizes of the mesh of a file.
+/// Sizes of the mesh in a file.
 struct FileSizes {
   std::int64_t vertices = 0;
   std::int64_t cells = 0;
@@ -60,14 +60,13 @@ class SplitFile : public Polymorphic {
   /// write the values.
   ///
   /// @param document  path of the new document; the caller writes it
-  /// @param checksum  mark to write into both files: `Checksum` of all points, then each cell's vertices
+  /// @param checksum  mark to write into both files: `Checksum` of all points, then of each cell's vertices
   /// @return the text of the document
   /// @throws InputError if the data cannot be written
   [[nodiscard]] virtual std::string write_without_values(const std::string& document, const std::string& data,
                                                          std::uint64_t checksum) const = 0;
 
-  /// Returns the byte offset of each part in a data file that `write_without_values` wrote, indexed by
-  /// FilePart::number.
+  /// Returns the byte offsets of the parts, by FilePart::number, in a data file of `write_without_values`.
   ///
   /// @param name  name of the data file in messages
   /// @throws InputError if the data file cannot be read, or lacks space for a part

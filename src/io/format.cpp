@@ -68,8 +68,8 @@ const std::vector<LackingFormat> kLackingFormats{
                                 where, format.name, format.library, format.option));
 }
 
-/// Loads the library of a format, if it has one, and returns the format. Throws Unavailable if the library
-/// cannot be loaded.
+/// Loads the library of a format, if the format has one, and returns the format. Throws Unavailable if the
+/// library cannot be loaded.
 const Format& with_library(const Format& format, const std::string& where) {
   try {
     if (format.load_library != nullptr) format.load_library();
@@ -79,7 +79,7 @@ const Format& with_library(const Format& format, const std::string& where) {
   return format;
 }
 
-/// Returns whether the file is as long as binary STL with the number of triangles in its header.
+/// Returns whether the file has the length that its header, read as binary STL, implies.
 bool has_size_of_stl(std::string_view bytes) {
   constexpr std::size_t kHeader = 80;
   if (bytes.size() < kHeader + 4) return false;
@@ -90,7 +90,7 @@ bool has_size_of_stl(std::string_view bytes) {
   return bytes.size() == kHeader + 4 + 50 * triangles;
 }
 
-/// Returns whether a line can begin an SU2 file; `word` is its first word, `rest` the text after it.
+/// Returns whether a line can begin an SU2 file. `word`: the line's first word; `rest`: the text after it.
 bool is_su2_keyword(std::string_view word, std::string_view rest) {
   constexpr std::array<std::string_view, 5> kKeywords{"NDIME", "NZONE", "IZONE", "NELEM", "NPOIN"};
   const std::size_t equals = word.find('=');
@@ -100,20 +100,20 @@ bool is_su2_keyword(std::string_view word, std::string_view rest) {
   });
 }
 
-/// Returns whether the bytes are a netCDF-3 file, or an HDF5 file with a name that every Exodus file has.
+/// Returns whether the bytes are a netCDF-3 file, or an HDF5 file with a name that all Exodus files contain.
 bool is_exodus(std::string_view bytes) {
   if (bytes.starts_with("CDF\x01") || bytes.starts_with("CDF\x02") || bytes.starts_with("CDF\x05"))
     return true;
   return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes.find("num_el_blk") != std::string_view::npos;
 }
 
-/// Returns whether the bytes are an HDF5 file with a name that MED files have.
+/// Returns whether the bytes are an HDF5 file that contains a group name of MED.
 bool is_med(std::string_view bytes) {
   return bytes.starts_with("\x89HDF\r\n\x1a\n") && (bytes.find("INFOS_GENERALES") != std::string_view::npos ||
                                                     bytes.find("ENS_MAA") != std::string_view::npos);
 }
 
-/// Returns whether the bytes are an HDF5 file with the group of VTKHDF.
+/// Returns whether the bytes are an HDF5 file that contains VTKHDF's group name.
 bool is_vtkhdf(std::string_view bytes) {
   return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes.find("VTKHDF") != std::string_view::npos;
 }
@@ -154,7 +154,7 @@ bool is_deck(std::string_view word, std::string_view rest) {
   return !is_one_of(kOfVega);
 }
 
-/// Returns whether the first line that is not a comment begins a Nastran file.
+/// Returns whether the first line that is neither blank nor a comment can begin a Nastran file.
 bool is_bulk_data(std::string_view bytes) {
   constexpr std::array<std::string_view, 6> kWords{"SOL", "CEND", "BEGIN", "NASTRAN", "GRID", "GRID*"};
   while (!bytes.empty()) {
@@ -201,7 +201,7 @@ std::string_view format_that_begins(std::string_view bytes) {
   return {};
 }
 
-/// Removes the two numbers that end the path of a piece of a decomposed Exodus mesh, as in "mesh.e.16.03".
+/// Returns the path of a piece of an Exodus mesh without its two last numbers: "mesh.e" for "mesh.e.16.03".
 /// Returns other paths unchanged.
 std::filesystem::path without_piece_numbers(const std::filesystem::path& path) {
   const auto is_number = [](const std::string& extension) {

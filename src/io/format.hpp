@@ -30,18 +30,19 @@ struct Format {
   /// a mesh from this format, a form that only meshorder reads suffices. `write` gets no other cells.
   bool (*holds)(const Mesh& mesh, Shape shape, int vertices);
   /// Returns why the cells of a mesh cannot share a file, although the format `holds` each of their types: a
-  /// clause that begins with the format's name; empty if they can. Null: they always can. `write` gets no
-  /// mesh with a conflict.
+  /// clause that begins with the format's name; empty if they can share a file. Null: no conflicts. `write`
+  /// gets no mesh with a conflict.
   std::string (*conflict)(const Mesh& mesh) = nullptr;
-  /// For a mesh from another format: returns each cell's position in the file; `blocks` receives the first
-  /// position of each block of cells that stay together. Null: `groups_cells_by_type` decides.
+  /// For a mesh from another format: returns each cell's position in the file; `blocks` receives the position
+  /// of the first cell of each block. Null: `groups_cells_by_type` decides.
   Permutation (*places)(const Mesh&, std::vector<Index>& blocks) = nullptr;
   /// Normalises cells whose form depends on the order of the vertices: moves the entries of a symmetric
-  /// matrix below the diagonal, sorts the edges of a graph. Call it after reordering vertices. Returns the
-  /// permutation of cells that it applied. Null: the format has no such cells.
+  /// matrix below the diagonal, sorts the edges of a graph. Call this function after reordering vertices.
+  /// Returns the permutation of cells that it applied. Null: the format has no such cells.
   Permutation (*settle_cells)(Mesh&) = nullptr;
-  /// Returns each cell's group, numbered by first appearance. The cells of a group need the same statements
-  /// before them in the file; they stay together unless the caller gives other groups. Null: no groups.
+  /// Returns the number of each cell's group; groups are numbered in order of appearance. The cells of a
+  /// group need the same statements before them in the file; these cells stay together unless the caller
+  /// gives other groups. Null: no groups.
   std::vector<Index> (*together)(const Mesh&) = nullptr;
   bool single_file = true;   ///< whether a mesh is one file; several files do not fit one stream
   int first_number = 0;      ///< number of the first vertex and the first cell of a mesh without ids
@@ -62,9 +63,9 @@ struct Format {
 /// Returns all formats, in the order of the help text.
 std::span<const Format> all_formats();
 
-/// Returns the format of the extension of `path`; case and a final ".gz" are ignored. Throws InputError, with
-/// advice, for unknown extensions, OpenFOAM cases and folders without an extension. Throws Unavailable if
-/// this build lacks the library of the format or cannot load it.
+/// Returns the format of the extension of `path`; case, a final ".gz" and the numbers of an Exodus piece are
+/// ignored. Throws InputError, with advice, for extensions that are not read, OpenFOAM cases and folders
+/// without an extension. Throws Unavailable if this build lacks the library of the format or cannot load it.
 const Format& format_of(const std::filesystem::path& path);
 
 /// As `format_of`, for a file to be written. Also throws InputError for .pvtu, which is only read.
@@ -74,24 +75,24 @@ const Format& output_format_of(const std::filesystem::path& path);
 /// lists the known names. Throws Unavailable as `format_of` does.
 const Format& format_named(std::string_view name);
 
-/// Guesses the format of a file from its bytes; returns null if it recognises none. Never recognises TetGen's
-/// files: they look like any other columns of numbers.
+/// Guesses the format of a file from its bytes; returns null if no format fits. Never recognises TetGen's
+/// files: they look like any other columns of numbers. Throws Unavailable as `format_of` does.
 const Format* format_of_bytes(std::string_view bytes);
 
 /// Arranges the cells of a mesh as a file of the format `to` has them, before reordering and writing. A mesh
 /// that came from `to` stays as it is. Otherwise cells are sorted by `to.places`, which also gives the
-/// blocks. If `to.places` is null, the mesh loses its blocks. If the format then groups cells by type, cells
+/// blocks. If `to.places` is null, the mesh loses its blocks; if the format also groups cells by type, cells
 /// are sorted by type, and each type becomes a block. Returns the applied permutation of cells, or nothing if
-/// they stay. A reordering that is computed afterwards refers to the cells in the order of the file.
+/// none was applied. A reordering that is computed afterwards refers to the cells in the order of the file.
 std::optional<Permutation> arrange_cells(Mesh& mesh, const Format& to);
 
-/// Returns `cells` with each group of `to.together` made contiguous, as far as its cells can change places.
-/// O(cells · log cells).
+/// Returns `cells` with each group of `to.together` made contiguous, as far as the group's cells can change
+/// places. O(cells · log cells).
 Permutation with_groups_together(const Mesh& mesh, Permutation cells, const Format& to);
 
 /// As `compute_reordering`, for a mesh that will be written in `options.format` (if empty, in the mesh's own
-/// format). If `options` has no groups of cells, the groups of `Format::together` stay together, except in
-/// the original order of a mesh that came from that format.
+/// format). If `options` has no groups of cells, the groups of `Format::together` stay together, unless the
+/// mesh came from that format and its cells keep the original order.
 MeshOrder compute_order_in_file(const Mesh& mesh, const CsrGraph& graph, const ReorderOptions& options);
 
 /// Throws InvalidArgument for `Ids::keep` if the format cannot hold ids.
@@ -101,7 +102,7 @@ void check_holds_ids(const Format& format, Ids ids);
 ///
 /// @param to        null: a mesh without a format
 /// @param arranged  what `arrange_cells` returned
-/// @return the permutation of cells from their order before `arrange_cells`
+/// @return the permutation of cells from their order before `arrange_cells` to their final order
 Permutation move_in_file(Mesh& mesh, const Permutation& vertices, Permutation cells, const Format* to,
                          const std::optional<Permutation>& arranged, Ids ids);
 
@@ -110,7 +111,7 @@ Permutation move_in_file(Mesh& mesh, const Permutation& vertices, Permutation ce
 void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells,
                       Ids ids);
 
-/// Undoes `apply_reordering` with these permutations for a mesh to be written in `to`. Throws as
+/// Undoes `apply_reordering` of these permutations; the mesh is to be written in `to`. Throws as
 /// `apply_reordering`. Ids change as for `Ids::renumber`.
 void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells);
 
@@ -131,7 +132,7 @@ void write_arranged(const Mesh& mesh, const FilePath& path, const WriteOptions& 
 // The extension .inp belongs to two formats: Abaqus decks and AVS UCD.
 
 /// As `format_of`, for a file to be read: .inp is AVS UCD if the file's first bytes look like UCD, else
-/// Abaqus. Throws InputError for an .inp file that cannot be read.
+/// Abaqus. Also throws InputError for an .inp file that cannot be read.
 const Format& format_of_file(const FilePath& path);
 
 /// As `output_format_of`, for a mesh of the format `of_mesh` (`Mesh::format`): .inp means AVS UCD if the mesh
@@ -145,7 +146,7 @@ struct OtherFormat {
   std::string_view advice;     ///< how to get a mesh that meshorder reads
 };
 
-/// Returns the format of files with this extension in lower case, null if it is not known.
+/// Returns the format of this extension (with dot, lower case), or null if it is unknown.
 const OtherFormat* other_format(std::string_view extension);
 
 /// Thrown if the marks of a mesh's files show that they were not written together.

@@ -56,7 +56,7 @@ class MemoryStore : public FileStore {
   std::function<std::string(std::string_view)> companion_;
 };
 
-/// Returns whether the folder of a path was written to after `since`, or up to a second before.
+/// Returns whether the folder of a path on disk was written to after `since` or less than 1 s before.
 bool is_written_to(const FilePath& path, std::chrono::file_clock::time_point since) {
   std::error_code code;
   const std::filesystem::path folder = path.path().parent_path();

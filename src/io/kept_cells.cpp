@@ -158,7 +158,7 @@ std::vector<Index> cells_for(const Mesh& mesh, const std::vector<TypeCount>& typ
 /// conflict of types. Returns an empty text if the file can hold all cells. O(cells).
 std::string fault_of_cells(const Mesh& mesh, std::vector<TypeCount> types, const Format& format) {
   std::erase_if(types, [&](const TypeCount& type) { return format.holds(mesh, type.shape, type.vertices); });
-  // the message names a type of this dimension: lower types may be left out
+  // the message names a type of this dimension: types of lower dimension may be left out
   const int highest = highest_dimension_of(types);
   for (const TypeCount& type : types) {
     if (dimension(type.shape) < highest) continue;

@@ -13,8 +13,8 @@ namespace meshorder {
 // dimension, the mesh is refused. Cells of lower dimensions that the format cannot hold are left out. All
 // vertices stay.
 
-/// Keeps the cells at these ascending positions with their arrays, sets, ids and blocks. Removes and notes
-/// the sets and partial arrays that have no cells left. O(size of the mesh).
+/// Keeps only the cells at these ascending positions, with their arrays, sets, ids and blocks. Removes and
+/// notes the sets and partial arrays that have no cells left. O(size of the mesh).
 void keep_cells_at(Mesh& mesh, const std::vector<Index>& kept, Notes& notes);
 
 /// Returns the positions of the cells to be written in the format, ascending: all cells if `strict` or if the

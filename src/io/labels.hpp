@@ -11,7 +11,7 @@ namespace meshorder {
 
 /// The labels (kLabel) of all vertices or all cells.
 struct Labels {
-  std::vector<std::int64_t> values;  ///< 0 if not given; empty if the mesh has no labels
+  std::vector<std::int64_t> values;  ///< each item's label, 0 if it has none; empty if the mesh has no labels
   std::vector<bool> given;           ///< whether the mesh gives each item a label
 
   [[nodiscard]] bool any() const noexcept { return !values.empty(); }
@@ -24,7 +24,7 @@ Labels labels_of(const Mesh& mesh, Association association, std::string_view nam
 /// Returns the array that `labels_of` uses, or nullptr.
 const DataArray* label_array(const Mesh& mesh, Association association, std::string_view name = kLabel);
 
-/// Notes that all arrays but the labels of cells are not written, for formats that hold no other arrays.
+/// Notes that no array except the labels of cells is written; for formats that hold no other array.
 void note_arrays_beside_cell_labels(const Mesh& mesh, std::string_view format, Notes& notes);
 
 /// Notes, for a mesh from SU2, that its labels (markers named by numbers) are written as `what`.

@@ -5,19 +5,19 @@
 
 namespace meshorder {
 
-/// A shared library, loaded on first use. Its objects need static storage duration. The libraries of file
-/// formats load 40 others; loading all at the start would take half of the time of a small task.
+/// A shared library, loaded on first use. Objects of this class need static storage duration. The libraries
+/// of file formats load 40 others; loading all at the start would take half of the time of a small task.
 class LoadedLibrary {
  public:
   /// @param name  as users know it: "HDF5"
   /// @param file  name by which the system's loader finds the library: "libhdf5.so.103"
   constexpr LoadedLibrary(const char* name, const char* file) noexcept : name_(name), file_(file) {}
 
-  /// Loads the library, unless it is loaded already. Throws Unavailable if the loader does not find it.
+  /// Loads the library, unless it is loaded already. Throws Unavailable if it cannot be loaded.
   void load() const { (void)handle(); }
 
-  /// Returns the address of a function or variable. Throws Unavailable if the library is not found or lacks
-  /// the symbol.
+  /// Returns the address of a function or variable. Throws Unavailable if the library cannot be loaded or
+  /// lacks the symbol.
   [[nodiscard]] void* address_of(const char* symbol) const;
 
  private:
@@ -66,7 +66,8 @@ class LoadedVariable : public LoadedSymbol {
 }  // namespace meshorder
 
 // Declares a function or a variable of the C library `library` in the enclosing namespace, where it hides the
-// library's own declaration. If a header defines `name` as a macro, the name that it expands to is declared.
+// library's own declaration. If a function's `name` is a macro of a header, the name that the macro expands
+// to is declared.
 // NOLINTBEGIN(bugprone-macro-parentheses): names are declared
 #define MESHORDER_LOADED_FUNCTION(library, name) MESHORDER_LOADED_FUNCTION_AS(library, name)
 #define MESHORDER_LOADED_FUNCTION_AS(library, name) \

@@ -36,25 +36,25 @@ struct MeshPart {
   /// Where the members of a set of `mesh` are in the file's list.
   struct SetRows {
     Index size = 0;              ///< length of the file's list, for the whole mesh
-    std::vector<Index> entries;  ///< for each member, its position in that list; ascending
+    std::vector<Index> entries;  ///< position of each member in that list, ascending
   };
   /// A list of the file that may name a member twice.
   struct List {
     std::string set;  ///< name, in messages, of the set made from the list
     Index size;       ///< length of the list, for the whole mesh
-    Index kept;       ///< members in this part, each counted once
+    Index kept;       ///< number of members in this part, each counted once
   };
 
   /// Where the rows of an array of `mesh` are in the file.
   struct ArrayRows {
-    bool is_partial = false;  ///< only some vertices or cells have rows; this part may have none
+    bool is_partial = false;  ///< whether only some vertices or cells have rows; this part may have none
     /// Position of each row in the file's list, ascending; empty if that list ascends by vertex or cell.
     std::vector<Index> entries = {};
   };
 
   MeshRanges ranges;
-  /// Cells name vertices by their positions in the whole mesh. Rows of arrays and members of sets count from
-  /// the first vertex or cell of the range. Ids are given even if they are 1, 2, …
+  /// Cells name vertices by the vertices' positions in the whole mesh. Rows of arrays and members of sets
+  /// count from the first vertex or cell of the range. Ids are given even if they are 1, 2, …
   Mesh mesh;
   std::vector<ArrayRows> arrays;  ///< indexed like the arrays of `mesh`
   std::vector<SetRows> sets;      ///< indexed like the sets of `mesh`

@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// Finds the arrays and sets of a mesh by name, for writers that look up many. Valid until the mesh's arrays
-/// or sets change.
+/// Finds the arrays and sets of a mesh by name, for writers that look up many. An object is valid until the
+/// mesh's arrays or sets change.
 class NamedParts {
  public:
   /// O(n · log n) for n arrays and sets.

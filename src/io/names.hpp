@@ -13,12 +13,12 @@
 
 namespace meshorder {
 
-/// Finds free names: numbers a wanted name that is taken.
+/// Finds free names: adds a number to a wanted name that is taken.
 class NameNumbers {
  public:
   /// Takes and returns the first of `wanted`, `numbered(2)`, `numbered(3)` … that is free.
   ///
-  /// @param take  returns whether a name was free, and takes it
+  /// @param take  takes a name if it is free, and returns whether it was
   /// @note O(log names) and the cost of `take`, even if all calls want the same name.
   template <class Numbered, class Take>
   std::string free_name(const std::string& wanted, Numbered numbered, Take take) {
@@ -31,10 +31,10 @@ class NameNumbers {
   }
 
  private:
-  std::map<std::string, int> last_;  // last number given, by wanted name
+  std::map<std::string, int> last_;  // last number given, for each wanted name
 };
 
-/// Gives arrays or sets names that are unique on vertices or on cells.
+/// Gives arrays or sets names that are unique among those on vertices and among those on cells.
 class UniqueNames {
  public:
   /// Returns the wanted name or, if it is taken, "NAME (2)", "NAME (3)" and so on. O(log names), even if all
@@ -67,14 +67,14 @@ class DistinctNames {
   /// `longest`: maximum size of a name in bytes, at least 12. Names are cut between characters of UTF-8.
   explicit DistinctNames(std::size_t longest = std::string::npos) : longest_(longest) {}
 
-  /// Takes and returns a free name: `wanted`, cut to the maximum size; if this name is taken, it ends with a
-  /// number. O(log names), even if all calls want the same name.
+  /// Takes and returns a free name: `wanted`, cut to the maximum size; if this name is taken, the returned
+  /// name ends with a number. O(log names), even if all calls want the same name.
   std::string take(std::string_view wanted);
 
  private:
   std::size_t longest_;
   std::set<std::string> taken_;
-  std::map<std::string, int> last_numbers_;  // last number given, by the wanted name
+  std::map<std::string, int> last_numbers_;  // last number given, for each wanted name
 };
 
 /// Notes "the set 'a b' is written as 'a_b'" if the names differ.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY\x01";  // with the major version 1
 constexpr std::size_t kAlignment = 64;                // alignment of the header, magic included, in bytes
-constexpr std::size_t kPreamble = 10;                 // magic, versions and the header's length
+constexpr std::size_t kPreamble = 10;                 // bytes of magic, versions and header length
 
 template <class T>
 void write_array(std::span<const T> values, const FilePath& path) {

@@ -22,7 +22,7 @@ void write_npy(std::span<const std::int64_t> values, const FilePath& path);
 std::vector<std::int64_t> read_npy(const FilePath& path);
 
 /// Reads the new position of each of `count` vertices or cells; `what` names them in the plural. Throws Error
-/// if the file has another number of entries or is not a permutation.
+/// as `read_npy` does, and if the entries are not a permutation of `count` items.
 Permutation read_permutation(const FilePath& path, Index count, const std::string& what);
 
 class Scanner;
@@ -34,7 +34,7 @@ struct NpyHeader {
   std::vector<std::int64_t> shape;
 };
 
-/// Returns the header of an array in C order: all bytes before the numbers. Its size is a multiple of 64.
+/// Returns the header of an array in C order: all bytes before the numbers, a multiple of 64.
 std::string npy_header(std::string_view type, std::span<const std::int64_t> shape);
 
 /// Reads the bytes before the first number. Throws Error, which names the byte, for other files.

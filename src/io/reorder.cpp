@@ -60,7 +60,7 @@ void move_with_ids(Mesh& mesh, const Permutation& vertices, const Permutation& c
 }
 
 /// Returns the format in which the mesh will be written: the format called `name`, or the mesh's own format
-/// if `name` is empty; null if it has none.
+/// if `name` is empty; null if the mesh has none.
 const Format* format_to_write(const Mesh& mesh, const std::string& name) {
   if (!name.empty()) return &format_named(name);
   return mesh.format.empty() ? nullptr : &format_named(mesh.format);

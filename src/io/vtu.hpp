@@ -17,7 +17,7 @@ struct VtuEncoding {
   Mode mode = Mode::appended_raw;
   Compressor compressor = Compressor::none;
   std::endian order = std::endian::native;
-  bool wide_headers = true;  ///< sizes of blocks are UInt64, not UInt32
+  bool wide_headers = true;  ///< whether sizes of blocks are UInt64, else UInt32
 };
 
 /// One file of a .pvd collection.

@@ -26,9 +26,9 @@ class WedgeVote {
   /// hexahedra, pyramids and wedges. O(1).
   void add(Shape shape, std::span<const Index> cell);
 
-  /// Returns whether the first triangles of wedges face inward: whether the volumes of wedges, read so, have
-  /// the sign of the other cells' volumes, or are positive if there are no other cells. A sign needs more
-  /// than 20 of 21 nonzero volumes; returns false if signs are mixed.
+  /// Returns whether the first triangles of wedges face inward: whether the wedges' volumes, computed on this
+  /// assumption, have the sign of the other cells' volumes (positive if there are no other cells). A sign
+  /// needs more than 20 of 21 nonzero volumes; returns false if signs are mixed.
   [[nodiscard]] bool wedges_face_inward() const;
 
   /// Returns 1 or −1 if more than 20 of 21 nonzero volumes have that sign, else 0. Wedges count as if their

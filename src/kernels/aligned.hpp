@@ -6,7 +6,7 @@
 
 namespace meshorder {
 
-/// Returns memory for `bytes` bytes; throws std::bad_alloc.
+/// Returns memory for `bytes` bytes; throws std::bad_alloc if there is none.
 void* allocate_aligned(std::size_t bytes);
 /// Frees what allocate_aligned returned for the same number of bytes.
 void free_aligned(void* block, std::size_t bytes) noexcept;

@@ -21,8 +21,8 @@ inline constexpr std::size_t kApart = 1088;
 /// Returns whether the addresses differ by less than kApart modulo 4096.
 bool aliases(const void* a, const void* b) noexcept;
 
-/// Returns an empty vector with room for `count` entries. A large vector does not alias up to two `others`:
-/// large vectors begin at three places of a page in turn (aligned.cpp).
+/// Returns an empty vector with room for `count` entries. A large vector aliases none of `others` if these
+/// are at most two: large vectors begin at three places of a page in turn (aligned.cpp).
 template <class T>
 AlignedVector<T> reserved_apart(std::size_t count, std::initializer_list<const void*> others) {
   AlignedVector<T> tries[3];

@@ -40,7 +40,7 @@ HWY_INLINE LameLanes<Lanes> load_lame(const ElasticPass& pass, Offset batch, Ind
 struct BatchBlocks {
   const Index* blocks = nullptr;
   const Index* next = nullptr;
-  Index count = 0;  ///< simplices of the batch
+  Index count = 0;  ///< number of simplices in the batch
   Index next_count = 0;
 };
 
@@ -60,8 +60,8 @@ HWY_INLINE BatchBlocks blocks_of(const ElasticPass& pass, Offset i, Offset batch
   return result;
 }
 
-/// Computes a batch of simplices and adds its forces to `targets`: the vertices of the batch, with spare
-/// vertices in place of other threads' vertices.
+/// Adds the forces of a batch of simplices to `targets` (the vertices of the batch, with spare vertices in
+/// place of other threads' vertices) and its stiffness to the matrix's `blocks`.
 ///
 /// A Law loads a deformation and its Lamé parameters; it computes stress(P) and energy(). A Tangent loads a
 /// deformation, its law, parameters and a weight; it computes block(a, b, K) = weight · gₐ·∂P/∂F·g_b for two

@@ -49,8 +49,8 @@ void round_to_single(const BlockCsr& matrix, BlockCsrOf<float>& result);
 template <class Value>
 void multiply(const BlockCsrOf<Value>& matrix, std::span<const double> x, std::span<double> y);
 
-/// Computes only the rows begin_row … end_row − 1 of that product, with the same bits, so that threads can
-/// share the rows.
+/// Computes only the rows begin_row … end_row − 1 of y = A x, with the same bits, so that threads can share
+/// the rows.
 template <class Value>
 void multiply_rows(const BlockCsrOf<Value>& matrix, std::span<const double> x, std::span<double> y,
                    Index begin_row, Index end_row);

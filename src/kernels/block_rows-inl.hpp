@@ -16,8 +16,9 @@ namespace meshorder::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_MAX_BYTES >= 32
-/// The sums of a row's blocks times the vector. Each of a block's nine products has its own sum: adding three
-/// products to one sum would make additions wait for each other. The first eight sums are in vectors.
+/// The sums of the products of a row's blocks and the vector. Each of a block's nine products has its own
+/// sum: adding three products to one sum would make additions wait for each other. The first eight sums are
+/// in vectors.
 struct RowSums {
   using Tag = hn::CappedTag<double, 8>;
   static constexpr int kLanes = static_cast<int>(MaxLanes(Tag()));
@@ -78,7 +79,7 @@ struct RowSums {
   }
 };
 #else
-/// The same without vectors: vectors of two lanes would gain nothing.
+/// The same sums without vectors: vectors of two lanes would gain nothing.
 struct RowSums {
   double s[9] = {};
 

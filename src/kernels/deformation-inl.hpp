@@ -93,7 +93,7 @@ struct Deformation {
   }
 };
 
-/// Lamé's parameters of the current simplices, possibly multiplied by a weight.
+/// Lamé's parameters of Lanes::kCount simplices.
 template <class Lanes>
 struct LameLanes {
   typename Lanes::Value mu, lambda;

@@ -21,8 +21,9 @@ constexpr Offset kBytesAhead = 3072;
 #if HWY_MAX_BYTES >= 32
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The sums of a row of a slab; also adds its blocks, transposed, to other rows. Each row of a block is
-/// loaded together with the number after it; the products of that number are in lane 3 and never used.
+/// The sums of a matrix row in a slab; also adds the row's blocks, transposed, to the sums of other rows.
+/// Each row of a block is loaded together with the number after it; the products of that number are in lane 3
+/// and never used.
 class HalfRow {
  public:
   HWY_INLINE explicit HalfRow(const double* p)
@@ -37,8 +38,8 @@ class HalfRow {
     row2_ = hn::MulAdd(load_four(block + 6), factors, row2_);
   }
 
-  /// Adds a block to this row and, transposed, to `column_sum`: the padded sum of the row with the number of
-  /// the block's column.
+  /// Adds a block to this row and, transposed, to `column_sum`: the padded sum of the row whose number is the
+  /// block's column.
   template <class Value>
   HWY_INLINE void add_both(const Value* block, const double* p, double* column_sum) {
     const Tag d;
@@ -49,7 +50,8 @@ class HalfRow {
     row0_ = hn::MulAdd(block0, factors, row0_);
     row1_ = hn::MulAdd(block1, factors, row1_);
     row2_ = hn::MulAdd(block2, factors, row2_);
-    // computed before `column_sum` is loaded: then only one addition waits for the last store to `column_sum`
+    // computed before `column_sum` is loaded: then only one addition waits for the latest store to
+    // `column_sum`
     const auto column = hn::MulAdd(block2, p2_, hn::MulAdd(block1, p1_, hn::Mul(block0, p0_)));
     hn::Store(hn::Add(hn::Load(d, column_sum), column), d, column_sum);
   }
@@ -89,7 +91,7 @@ class HalfRow {
   hn::Vec<Tag> row2_ = hn::Zero(Tag());
 };
 #else
-/// The same without vectors: vectors of two lanes would gain nothing.
+/// The same sums without vectors: vectors of two lanes would gain nothing.
 class HalfRow {
  public:
   HWY_INLINE explicit HalfRow(const double* p) : p_(p) {}

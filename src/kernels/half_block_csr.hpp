@@ -23,8 +23,8 @@ template <class Value>
 struct HalfBlockCsrOf {
   std::vector<Index> slabs{0};     ///< bounds of the slabs
   std::vector<Offset> offsets{0};  ///< 2 n + 1
-  std::vector<Index> columns;      ///< and kSpareColumns zeros at the end, because columns are read ahead
-  AlignedVector<Value> values;     ///< and a number at the end, because vector loads read past the blocks
+  std::vector<Index> columns;      ///< one per block, then kSpareColumns zeros: columns are read ahead
+  AlignedVector<Value> values;     ///< 9 per block, then a zero: vector loads read past the blocks
 
   static constexpr Offset kSpareColumns = 64;
 
@@ -36,7 +36,7 @@ struct HalfBlockCsrOf {
 
 using HalfBlockCsr = HalfBlockCsrOf<double>;
 
-/// Returns the bounds of the slabs of a matrix: 16 slabs, or one per row if it has fewer rows. O(log n).
+/// Returns the bounds of the slabs of a matrix: 16 slabs, or one per row if there are fewer rows. O(log n).
 std::vector<Index> slabs_of(const BlockCsr& matrix);
 
 /// Returns the share, 0 … 1, of a matrix's blocks whose row and column are in different slabs; such a block

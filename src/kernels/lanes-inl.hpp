@@ -15,7 +15,7 @@
 
 #include <cmath>
 
-/// Unrolls the next loop over rows, columns or corners: without this GCC keeps small matrices in memory.
+/// Unrolls the next loop over rows, columns or corners: otherwise GCC keeps small matrices in memory.
 #undef MESHORDER_UNROLL
 #define MESHORDER_UNROLL _Pragma("GCC unroll 16")
 
@@ -31,7 +31,7 @@ HWY_INLINE void fetch_stream(const void* place) {
   for (Offset at = 0; at < Bytes; at += kLine) hwy::Prefetch(static_cast<const char*>(place) + at);
 }
 
-/// One simplex at a time: the scalar reference.
+/// Lanes for one simplex at a time: the scalar reference.
 template <class Real>
 struct OneLaneOf {
   using Number = Real;

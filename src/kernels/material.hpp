@@ -13,8 +13,8 @@ enum class MaterialModel : std::uint8_t {
   corotational,  ///< μ‖F − R‖² + ½λ tr²(RᵀF − I), R the rotation closest to F (Müller, Gross 2004)
   stvk,          ///< Saint Venant–Kirchhoff: μ E:E + ½λ tr(E)², E = ½(FᵀF − I)
   /// Stable Neo-Hookean (Smith, De Goes, Kim 2018): ψ(F) − ψ(I) with ψ = ½μ'(‖F‖² − 3) + ½λ'(det F − α)² −
-  /// ½μ' log(‖F‖² + 1), α = 1 + ¾ μ'/λ'. The logarithm keeps a collapsed element from resting at F = 0.
-  /// μ' = 4/3 μ and λ' = λ + 5/6 μ make it Hooke's law with Lamé's μ and λ near rest.
+  /// ½μ' log(‖F‖² + 1), α = 1 + ¾ μ'/λ'. The logarithm keeps a collapsed element from resting at F = 0. Near
+  /// rest, μ' = 4/3 μ and λ' = λ + 5/6 μ give Hooke's law with Lamé's μ and λ.
   neo_hookean,
 };
 
@@ -57,7 +57,7 @@ struct Elasticity {
   MaterialModel model = MaterialModel::corotational;
   Tangent tangent = Tangent::exact;
   Lame lame;  ///< parameters of all simplices, if `mu` and `lambda` are empty
-  /// Entry s is for simplex s; padded to whole batches (see RestShapes). Empty if `lame` is for all.
+  /// Parameters of each simplex, padded to whole batches (see RestShapes); empty if `lame` is for all.
   AlignedVector<double> mu, lambda;
 };
 

@@ -16,7 +16,7 @@ namespace meshorder::HWY_NAMESPACE {
 
 /// Stable Neo-Hookean: Ψ = ψ(F) − ψ(I) with ψ = ½μ' (‖F‖² − 3) + ½λ' (det F − α)² − ½μ' log(‖F‖² + 1),
 /// α = 1 + ¾ μ'/λ'. Without the logarithm a collapsed element would rest at F = 0.
-/// μ' = 4/3 μ and λ' = λ + 5/6 μ make it Hooke's law with Lamé's μ and λ near rest.
+/// Near rest, μ' = 4/3 μ and λ' = λ + 5/6 μ give Hooke's law with Lamé's μ and λ.
 template <class Lanes>
 struct NeoHookean {
   using Value = typename Lanes::Value;

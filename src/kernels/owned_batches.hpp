@@ -35,8 +35,8 @@ struct OwnedBatches {
 /// are the offsets of the compressed rows. O(parts · log rows).
 std::vector<Index> balanced_ranges(std::span<const Offset> offsets, Index parts);
 
-/// Sets `owners` to the numbers, ascending, of the ranges in `bounds` that hold any of `vertices`.
-/// O(vertices · log parts).
+/// Sets `owners` to the ascending numbers of the ranges in `bounds` that hold any of `vertices`. O(vertices ·
+/// log parts).
 void owners_of(std::span<const Index> vertices, std::span<const Index> bounds, std::vector<Index>& owners);
 
 /// Returns one share for each range of `bounds` (see balanced_ranges); the last bound is the number of

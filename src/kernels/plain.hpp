@@ -47,8 +47,8 @@ void multiply(const Matrix<Number, Column, Start>& a, std::span<const Number> x,
   }
 }
 
-/// Adds the forces of springs of stiffness 1: `ends` has two vertices for each spring, `lengths` its length
-/// at rest.
+/// Adds the forces of springs of stiffness 1: `ends` has two vertices for each spring, `lengths` the spring's
+/// length at rest.
 template <class Number, class Owned = AllVertices>
 void springs(std::span<const Index> ends, std::span<const Number> lengths, std::span<const Number> positions,
              std::span<Number> forces, const Owned& owned = {}) {

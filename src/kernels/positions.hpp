@@ -18,12 +18,12 @@ namespace meshorder {
 /// number that stays 0, so that a vertex never straddles a cache line and aligned vector loads can read it.
 inline constexpr Index kPaddedStride = 4;
 
-/// Returns n vertices at zero in that layout. O(n).
+/// Returns n vertices at zero with kPaddedStride numbers each. O(n).
 inline AlignedVector<double> padded_zeros(Index n) {
   return AlignedVector<double>(Offset{kPaddedStride} * n, 0.0);
 }
 
-/// Returns the points in that layout. O(n).
+/// Returns the points with kPaddedStride numbers each. O(n).
 inline AlignedVector<double> padded_positions(std::span<const Point> points) {
   AlignedVector<double> result = padded_zeros(index_size(points));
   auto place = result.begin();

@@ -42,7 +42,7 @@ std::vector<bool> groups_with_simplices(const Simplices& simplices, const Groupi
   return has;
 }
 
-/// Returns the group of that name (or, if groups have no names, of that value) if it has simplices.
+/// Returns the group with simplices whose name (or value, if groups have no names) is `region`, if any.
 std::optional<std::size_t> find_group(const Grouping& grouping, const std::vector<bool>& has,
                                       const std::string& region) {
   for (std::size_t group = 0; group < grouping.values.size(); ++group) {

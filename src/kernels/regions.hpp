@@ -17,7 +17,7 @@ struct Material {
   double density = 1000.0;  ///< ρ > 0, kg/m³
 };
 
-/// The material of one region: the set of cells with that name, or the cells with that value ("7").
+/// The material of one region: of the set of cells called `region`, or of the cells with that value ("7").
 struct RegionMaterial {
   std::string region;
   Material material;

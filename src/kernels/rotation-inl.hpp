@@ -173,9 +173,9 @@ HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3], typ
 }
 
 /// Computes the rotation closest to each 3×3 matrix F: R with RᵀR = I and det R = 1 that minimises ‖F − R‖.
-/// For det F > 0 it is the rotation of F's polar decomposition. It exists for every F. If it is not unique (F
-/// = 0, or σ₂ + σ₃ = 0 for the signed singular values), returns one of the closest rotations: the identity
-/// for F = 0. NaN if an entry is not finite. The error is about 1e-15 σ₁ / (σ₂ + σ₃).
+/// For det F > 0 it is the rotation of F's polar decomposition. A closest rotation exists for every F. If
+/// there are several (F = 0, or σ₂ + σ₃ = 0 for the signed singular values), returns one of them: the
+/// identity for F = 0. NaN if an entry is not finite. The error is about 1e-15 σ₁ / (σ₂ + σ₃).
 template <class Lanes>
 HWY_INLINE void closest_rotations(const typename Lanes::Value (&f)[3][3], typename Lanes::Value (&r)[3][3]) {
   RotationTerms<Lanes> terms;

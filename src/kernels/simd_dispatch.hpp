@@ -26,7 +26,7 @@ void limit_simd_targets(std::int64_t targets);
 /// "NEON".
 std::string simd_target();
 
-/// Returns the place of the best version in a table of MESHORDER_SIMD_VERSIONS.
+/// Returns the index of the best version in a table of MESHORDER_SIMD_VERSIONS.
 ///
 /// @param targets  the instruction sets for which the table has a version, as bits of HWY_TARGETS
 inline std::size_t simd_version(std::int64_t targets) {

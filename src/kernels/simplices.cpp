@@ -13,7 +13,7 @@ using Matrix = std::array<std::array<double, 3>, 3>;
 
 /// Returns Dₘ in an orthonormal frame of the edges (Gram–Schmidt; right-handed if D = 3): upper triangular,
 /// D×D. Its determinant is D! times the volume, which has a sign for a tetrahedron. Sets `longest` to the
-/// largest length of these edges.
+/// length of the longest edge.
 Matrix edges_in_their_frame(int dimension, std::array<Point, 3> edges, double& longest) {
   Matrix result{};
   longest = 0.0;

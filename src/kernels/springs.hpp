@@ -27,7 +27,7 @@ double spring_energy(const Springs& springs, double stiffness, std::span<const d
 
 /// Adds −∂/∂x of that energy to `forces`: k (‖d‖ − ℓ₀) d/‖d‖ on end a and its opposite on end b. A spring
 /// whose ends coincide has no force. Positions and forces have the layout of padded_positions. Throws
-/// InvalidArgument if the sizes differ. Works in batches, as add_elasticity. O(springs).
+/// InvalidArgument if the sizes differ. Works in batches, as add_elasticity does. O(springs).
 void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
                        std::span<double> forces);
 

@@ -24,7 +24,7 @@ void for_elements(const Mesh& mesh, Visit visit) {
   }
 }
 
-/// Removes facets that several elements have, which must be adjacent; sorts the other facets by element.
+/// Removes facets that several elements have; sorts the others by element. Equal facets must be adjacent.
 void keep_unmatched(std::vector<ElementFacet>& facets) {
   auto kept = facets.begin();
   for (auto begin = facets.begin(); begin != facets.end();) {
@@ -84,7 +84,7 @@ Point centre(const Mesh& mesh, std::span<const Index> vertices) {
   return sum;
 }
 
-/// Adds a face of a cell as triangles that are counterclockwise seen from outside the cell.
+/// Adds a face of a cell as triangles that are counterclockwise as seen from outside the cell.
 void add_face(const Mesh& mesh, Index c, const std::vector<int>& positions,
               std::vector<std::array<Index, 3>>& triangles) {
   const auto cell = mesh.cells[c];

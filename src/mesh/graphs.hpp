@@ -19,7 +19,7 @@ inline CellArrays cell_arrays(const Mesh& mesh) {
   return arrays;
 }
 
-/// Returns the graph that joins the vertices of each element, or of each of its pieces (vertex_joins.hpp).
+/// Returns the graph that joins the vertices of each element or piece of an element (vertex_joins.hpp).
 /// Vertices without elements have no neighbours. O(sum of piece sizes squared · log degree).
 inline CsrGraph vertex_graph(const Mesh& mesh) { return vertex_graph(cell_arrays(mesh)); }
 

@@ -11,7 +11,8 @@
 namespace meshorder {
 namespace {
 
-/// Returns a whole number as int64; nothing for other values, and for reals of magnitude 2⁶² or more.
+/// Returns a whole number as int64; nothing for other values, integers that int64 cannot hold, and reals of
+/// magnitude 2⁶² or more.
 template <class Value>
 std::optional<std::int64_t> whole(const Value& value) {
   if constexpr (std::is_integral_v<Value>) {
@@ -57,8 +58,8 @@ std::string usable_names(const Mesh& mesh) {
   return list.empty() ? "none" : list;
 }
 
-/// Returns the array called `name`, first among those on cells, or else the array that "cells:NAME" or
-/// "vertices:NAME" means; nullptr if there is no such array.
+/// Returns the array called `name`, on cells or else on vertices; without such an array, the one that `name`
+/// means in the form "cells:NAME" or "vertices:NAME"; nullptr if there is none.
 const DataArray* array_meant(const Mesh& mesh, std::string_view name) {
   for (const Association association : {Association::cells, Association::vertices}) {
     if (const DataArray* array = find_array(mesh, name, association)) return array;
@@ -70,8 +71,8 @@ const DataArray* array_meant(const Mesh& mesh, std::string_view name) {
   return nullptr;
 }
 
-/// Sets `values` to the distinct numbers, ascending. Returns the index in `values` of the number of each
-/// vertex or cell, or `values.size()` if it has none.
+/// Sets `values` to the distinct numbers, ascending. Returns for each vertex or cell the index of its number
+/// in `values`, or `values.size()` if it has no number.
 std::vector<Index> numbered(const DataArray& array, const std::vector<std::int64_t>& numbers, Index count,
                             std::vector<std::int64_t>& values) {
   values = numbers;

@@ -12,7 +12,7 @@
 
 namespace meshorder {
 
-/// The group of each vertex and each cell of a mesh: materials, regions, physical groups.
+/// The group of each vertex and each cell of a mesh, such as a material, a region or a physical group.
 struct Grouping {
   std::string name;                              ///< name of the array, or "sets"
   Association association = Association::cells;  ///< association of that array

@@ -31,7 +31,7 @@ void check_members(const std::vector<Index>& members, Index count, const std::st
   fail(owner + " names " + std::to_string(*wrong) + ", outside 0 … " + std::to_string(count - 1));
 }
 
-/// Returns the least number of vertices of a cell for each byte that its shape may hold; for bytes that are
+/// Returns for each byte the least number of vertices of a cell whose shape has that byte; for bytes that are
 /// no shape, a number that no cell reaches.
 constexpr std::size_t kBytes = 256;
 std::array<Offset, kBytes> least_vertices() {

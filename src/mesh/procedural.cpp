@@ -108,8 +108,8 @@ double volume(const std::array<Point, 4>& p) {
 }
 
 /// Applies `map` to every vertex. The map flattens cubes at the rim and along diagonals, where jitter could
-/// invert tetrahedra: if a tetrahedron has less than a tenth of its volume without jitter, its vertices lose
-/// their jitter.
+/// invert tetrahedra: if a tetrahedron has less than a tenth of the volume that it would have without jitter,
+/// its vertices lose their jitter.
 template <class Map>
 void bend(Mesh& mesh, const Lattice& lattice, Map map) {
   constexpr double kMinShare = 0.1;

@@ -24,7 +24,7 @@ Mesh make_grid(const ProceduralOptions& options);
 Mesh make_ball(const ProceduralOptions& options);
 
 /// Makes a torus of radius 1 and tube radius 0.4: size × size lattice cubes across the tube, 8 · size cubes
-/// around.
+/// along the ring.
 Mesh make_torus(const ProceduralOptions& options);
 
 }  // namespace meshorder

@@ -193,7 +193,7 @@ bool have_one_type(const Cells& cells, Index a, Index b) {
   return cells.shapes[a] == cells.shapes[b] && cells.vertex_count(a) == cells.vertex_count(b);
 }
 
-/// Moves the cells with their arrays, sets and ids, across blocks too.
+/// Moves the cells with their arrays, sets and ids, also from block to block.
 void move_cells(Mesh& mesh, const Permutation& places) {
   if (places.is_identity()) return;
   move_all(mesh, Permutation::identity(mesh.vertex_count()), places);

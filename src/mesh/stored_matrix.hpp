@@ -67,10 +67,10 @@ struct PatternFacts {
   bool is_symmetric = true;
   Index missing_diagonal = 0;  ///< rows without an entry on the diagonal
   /// Size of blocks: the largest b of 2 … 8 that divides the number of rows and for which entries fill at
-  /// least the share `kFullBlocks` of all b × b blocks with an entry; 1 if there is none.
+  /// least the share `kFullBlocks` of all b × b blocks that have an entry; 1 if there is no such b.
   int block = 1;
-  double block_fill = 0;  ///< share of positions in these blocks with an entry; 0 if `block` is 1
-  std::vector<Offset> histogram_log2 = {};  ///< entry k: number of entries 2ᵏ … 2ᵏ⁺¹ − 1 from the diagonal
+  double block_fill = 0;  ///< share of the positions in these blocks that hold an entry; 0 if `block` is 1
+  std::vector<Offset> histogram_log2 = {};  ///< entry k: number of entries at 2ᵏ … 2ᵏ⁺¹ − 1 off the diagonal
 };
 inline constexpr double kFullBlocks = 0.8;
 

@@ -91,7 +91,7 @@ void append_values(Values& values, Values more);
 /// Converts numbers to double; returns nothing for texts. O(values).
 std::vector<double> as_reals(const Values& values);
 
-/// Returns the value that is written for a missing one: NaN, 0 for integers, an empty text.
+/// Returns the value that is written for a missing value: NaN, 0 for integers, an empty text.
 template <class Number>
 Number missing_value() {
   if constexpr (std::is_floating_point_v<Number>) return std::numeric_limits<Number>::quiet_NaN();
@@ -108,7 +108,7 @@ inline Values values_of_type(std::size_t type) {
   return result;
 }
 
-/// Returns values of the type with that index, which `fill` adds to an empty vector.
+/// Returns a vector of the type with that index in Values; `fill` fills the vector.
 template <class Fill>
 Values values_of_type(std::size_t type, const Fill& fill) {
   Values values = values_of_type(type);

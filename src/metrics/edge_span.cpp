@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// Calls `visit(span)` for every edge from one of the vertices begin … end−1 to a smaller vertex.
+/// Calls `visit(span)` for every edge from a vertex of begin … end − 1 to a vertex with a smaller number.
 ///
 /// @param place_of  `place_of(v)` returns the new number of a vertex
 template <class PlaceOf, class Visit>

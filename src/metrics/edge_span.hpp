@@ -24,10 +24,10 @@ struct EdgeSpan {
 /// Returns the statistics of all edges' spans in the given order. O(n + edges).
 EdgeSpan edge_span(GraphRef graph, const Permutation& order);
 
-/// Like `edge_span`, for the edges at a `VertexSample`, on all threads. On tetrahedral meshes `mean` is
-/// within 5 % of the exact value and `mean_log2` within 0.05; `max` is at most the exact value. Below 262,144
-/// vertices all values are exact except for rounding. Values do not depend on the number of threads.
-/// O(vertices and edges of the sample).
+/// Like `edge_span`, for the edges at the vertices of a `VertexSample`, on all threads. On tetrahedral meshes
+/// `mean` is within 5 % of the exact value and `mean_log2` within 0.05; `max` is at most the exact value.
+/// Below 262,144 vertices all values are exact except for rounding. Values do not depend on the number of
+/// threads. O(vertices and edges of the sample).
 ///
 /// @param place_of  the new number of each vertex; empty: the vertices keep their numbers
 EdgeSpan sampled_edge_span(GraphRef graph, std::span<const Index> place_of);

@@ -15,7 +15,7 @@ constexpr Index kNoPlace = -1;
 /// factorization).
 std::vector<Index> elimination_tree(GraphRef graph, const Permutation& order) {
   std::vector<Index> parent(static_cast<std::size_t>(graph.size()), kNoPlace);
-  std::vector<Index> ancestor(parent);  // of each node in the tree so far, by shortened paths
+  std::vector<Index> ancestor(parent);  // an ancestor of each node so far; shortens paths
   for (Index row = 0; row < graph.size(); ++row) {
     poll_in_loop(row);
     for (const Index neighbour : graph[order.new_to_old()[row]]) {
@@ -38,7 +38,7 @@ struct Postordered {
   std::vector<Index> depth;             ///< depth of each node, by number; 0 for roots
 };
 
-/// Numbers a tree in postorder. `parent[k]`: the parent of node k, which is a later node, or kNoPlace.
+/// Numbers a tree in postorder. `parent[k]`: the parent of node k, a node after k, or kNoPlace.
 Postordered postordered(std::span<const Index> parent) {
   const Index n = index_size(parent);
   std::vector<Index> size(parent.size(), 1);

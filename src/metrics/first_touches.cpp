@@ -61,7 +61,7 @@ class FirstTouches {
   }
 
  private:
-  /// Returns whether a row before `begin` reads a line.
+  /// Returns whether any row before `begin` reads the line.
   [[nodiscard]] bool is_read_before(Index line, Index begin) const {
     if (begin == 0) return false;
     const Index first = line * kEntriesInLine;

@@ -23,10 +23,11 @@ struct Iterations {
   bool operator==(const Iterations&) const = default;
 };
 
-/// Returns how many iterations each of two preconditioners, which depend on the order, needs until the
-/// residual is 1e-8 of the right side. The matrix is the Laplacian of the graph in that order, with a
-/// hundredth of the mean degree added to its diagonal. A vertex's entry of the right side is the same in
-/// every order. More than 1,000 iterations count as 1,000. O(entries · iterations), and 40 bytes an entry.
+/// Returns how many iterations conjugate gradients need with each of two preconditioners, which depend on the
+/// order, until the residual is at most 1e-8 of the right side. The matrix is the Laplacian of the graph in
+/// that order, with a hundredth of the mean degree added to its diagonal. A vertex's entry of the right side
+/// is the same in every order. More than 1,000 iterations count as 1,000. O(entries · iterations), and 40
+/// bytes an entry.
 Iterations iterations_in(GraphRef graph, const Permutation& order);
 
 /// Returns how many entries below the diagonal the Cholesky factor has, for a matrix with this pattern in the

@@ -50,16 +50,16 @@ class ReuseHistogram {
   Offset cold_ = 0;
 };
 
-/// How a program reaches a cache line. streamed: as the next line of an array that it reads from front to
-/// back; gathered: at a place that depends on the mesh.
+/// How a program reaches a cache line. streamed: as the next line of an array that the program reads from
+/// front to back; gathered: at a place that depends on the mesh.
 enum class Access : bool { streamed, gathered };
 
 /// Histograms of a stream: of all accesses, and of jumps.
 struct Reuse {
   ReuseHistogram all;
-  /// Gathered accesses that are far (cold, or of distance 512 or more: an L1 cache of 32 KB) and do not
-  /// continue a stream: neither of the two lines before the line is among the last 64 far accesses.
-  /// Processors prefetch the lines that continue a stream; a jump waits for the memory.
+  /// Gathered accesses that are far (cold, or of distance 512 or more, so that an L1 cache of 32 KB misses
+  /// them) and do not continue a stream: neither of the two lines before the line is among the last 64 far
+  /// accesses. Processors prefetch the lines that continue a stream; a jump waits for the memory.
   ReuseHistogram jumps;
 
   bool operator==(const Reuse&) const = default;
@@ -114,10 +114,10 @@ class ReuseDistance {
   /// The last access to a line. Its two numbers are read together, mostly from memory: one record holds both.
   struct LastAccess {
     Slot slot = kNever;
-    std::uint32_t far = 0;  ///< number of the last far access; cold accesses are far, too
+    std::uint32_t far = 0;  ///< ordinal number of the line's last far access; cold accesses are far, too
   };
 
-  /// In a sample: numbers of far accesses up to a line's last far access. A block is sampled as a whole, so
+  /// In a sample: counts of far accesses up to a line's last far access. A block is sampled as a whole, so
   /// gathered accesses to the line's own block are counted exactly; gathered accesses to other blocks are
   /// estimated by the accesses to sampled blocks. Streamed accesses count as far.
   struct FarOfSample {

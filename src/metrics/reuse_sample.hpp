@@ -94,7 +94,7 @@ class ReuseSample {
 
   void measure_those_that_wait();
 
-  /// Returns whether a block is sampled, by a hash: no stride of a stream coincides with the sample's.
+  /// Returns whether a block is sampled. A hash decides, so that no stride of a stream fits the sample.
   [[nodiscard]] bool sampled(Index block) const noexcept {
     std::uint32_t bits = static_cast<std::uint32_t>(block) * 0x9e3779b1U;
     bits = (bits ^ bits >> 15U) * 0x85ebca6bU;
@@ -107,7 +107,7 @@ class ReuseSample {
 
   int halvings_;
   std::vector<Index> place_of_block_;        ///< place among the sampled blocks; empty if all are sampled
-  std::array<Waiting, kWaiting> waiting_{};  ///< the last accesses, number k at k % kWaiting
+  std::array<Waiting, kWaiting> waiting_{};  ///< the latest sampled accesses; number k is at k % kWaiting
   std::size_t sampled_accesses_ = 0;
   std::uint32_t streamed_ = 0;
   ReuseDistance reuse_;

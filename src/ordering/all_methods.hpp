@@ -45,7 +45,7 @@ std::vector<MethodInfo> built_in_element_methods();
 /// exceed the last cache. Vertices move only within their chunk, so each chunk remains the same compact
 /// region.
 ///
-/// O(n + edges · log degree) on all threads; the result does not depend on their number.
+/// O(n + edges · log degree) on all threads; the result does not depend on the number of threads.
 Permutation in_fronts(GraphRef graph, const Permutation& order);
 
 /// Orders a small graph by bisection down to a few vertices. Returns the vertices in their new order.

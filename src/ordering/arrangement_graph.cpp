@@ -84,7 +84,7 @@ CoarseArrangement coarsen(const ArrangementGraph& graph, const std::vector<Index
   ArrangementGraph& coarse = result.graph;
   coarse.volumes.assign(count, 0);
   coarse.offsets.reserve(Offset{count} + 1);
-  std::vector<Offset> entry_of(count, -1);  // the last entry of each group, in this row or an earlier one
+  std::vector<Offset> entry_of(count, -1);  // the last entry of each group, in this or an earlier row
   for (Index g = 0; g < count; ++g) {
     poll_in_loop(g);
     const Offset row = coarse.offsets.back();

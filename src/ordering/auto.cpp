@@ -38,8 +38,8 @@ Workload parse_workload(std::string_view name) { return parse<Workload>(name); }
 
 namespace {
 
-/// The kind of a graph. lattice: a lattice, cut into cells of any shape. placed: another graph with
-/// coordinates. bare: another graph without coordinates.
+/// The kind of a graph. lattice: a lattice, cut into cells of any shape. placed: another graph, with
+/// coordinates that are not all equal. bare: any other graph.
 enum class Kind : std::uint8_t { lattice, placed, bare };
 
 /// A method and the condition under which it is chosen; the first rule that fits decides.

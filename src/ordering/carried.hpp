@@ -11,7 +11,7 @@ namespace meshorder {
 
 /// How the vertices of an update differ from those of the previous update.
 struct VertexChanges {
-  std::vector<Index> places;  ///< places after the previous update, −1 if new; empty: none has moved
+  std::vector<Index> places;  ///< each vertex's place after the previous update, −1 if new; empty: none moved
   std::vector<Index> added;
   Index removed = 0;
 };

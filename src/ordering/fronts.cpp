@@ -59,7 +59,7 @@ class SectionRenumbering {
     Index found = 0;
     seeds_.clear();
     for (Index place = begin; place < end; ++place) {
-      // prefetches for later places; not in a function: GCC 12 drops calls of it as code without effect
+      // prefetches for later places; not in a function, whose calls GCC 12 drops as code without effect
       if (place + kAheadOfOffset < index_size(vertices)) {
         prefetch_offsets(graph_.offsets, vertices.subspan(place + kAheadOfOffset, 1));
         prefetch_rows(graph_.offsets, graph_.neighbours, vertices.subspan(place + kAheadOfRow, 1));

@@ -10,8 +10,7 @@
 
 namespace meshorder {
 
-/// Returns `groups` with the distinct numbers replaced by 0 … `count` − 1, in ascending order. O(size · log
-/// size).
+/// Returns the rank, 0 … `count` − 1, of each of `groups` among the distinct numbers. O(size · log size).
 ///
 /// @param what   "vertices" or "cells", for the message
 /// @param count  receives the number of groups

@@ -92,7 +92,7 @@ class InsertionSearch {
     return best;
   }
 
-  /// Puts v at the place within reach where the total span is least. Returns whether it moved.
+  /// Puts v at the place within reach where the total span is least. Returns whether v moved.
   bool reinsert(Index v, Index chunk, const Places& places) {
     const Index from = place_[v];
     Offset degree = 0;

@@ -14,7 +14,7 @@
 namespace meshorder {
 namespace {
 
-/// What other code has to know of a method.
+/// The properties of a method that other code needs.
 struct Traits {
   bool needs_points = false;
   bool is_reversible = false;

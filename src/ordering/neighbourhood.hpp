@@ -82,7 +82,7 @@ class PointNeighbourhood : public Neighbourhood {
 
   [[nodiscard]] Index size() const override { return static_cast<Index>(points_.size()); }
   [[nodiscard]] double span_log2(std::span<const Index> place_of) const override;
-  /// Returns `fresh` plus `slack` times log₂ n, since `fresh` is 0 for the order along the curve itself.
+  /// Returns `fresh` + `slack` · log₂(1 + n), since `fresh` is 0 for the order along the curve itself.
   [[nodiscard]] double most_span(double fresh, double slack) const override;
   [[nodiscard]] std::string_view too_far() const override {
     return "points are too far from their places on the curve: the mean log2 distance is";

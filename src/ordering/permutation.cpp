@@ -21,7 +21,7 @@ namespace {
                         std::to_string(n - 1));
 }
 
-/// Throws InvalidArgument that names the first entry that keeps `map` from being a bijection of 0 … n−1.
+/// Throws an InvalidArgument that names the first entry that keeps `map` from being a bijection of 0 … n−1.
 [[noreturn]] void fail(std::span<const Index> map) {
   const auto n = static_cast<Offset>(map.size());
   std::vector<Index> inverse(map.size(), -1);

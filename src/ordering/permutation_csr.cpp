@@ -68,7 +68,7 @@ void for_each_moved_row(const GraphArrays& matrix, const Permutation& order, std
   });
 }
 
-/// Throws TooLarge if an output cannot hold a number.
+/// Throws TooLarge if the type of `numbers` cannot hold `largest`.
 void check_fits(const IndexSpan& numbers, Offset largest, const char* what) {
   if (numbers.bytes() == 8) return;
   const Offset limit = numbers.is_signed() ? Offset{std::numeric_limits<std::int32_t>::max()}

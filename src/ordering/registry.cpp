@@ -31,7 +31,8 @@ struct Registry {
   std::vector<Registered<ElementMethod>> element_methods;
 };
 
-/// Returns the registry. It is never destroyed, since static objects may hold registrations until the end.
+/// Returns the registry. It is never destroyed, since static objects may hold registrations until the program
+/// ends.
 Registry& registry() {
   // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): all threads share it
   static auto* const registry = new Registry;
@@ -85,7 +86,7 @@ Method method_of_name(std::string_view name, std::vector<Registered<Method>> Reg
   return {};
 }
 
-/// Moves the method with that number, if there is one, out of the list into `method`.
+/// If the list has a method with that number, moves the method out of the list into `method`.
 template <class Method>
 void take_out(std::vector<Registered<Method>>& list, std::uint64_t id, Method& method) {
   const auto found =

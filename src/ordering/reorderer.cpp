@@ -194,7 +194,8 @@ class Reorderer::Inside {
       options.start = next.vector;
       options.tolerance *= kWarmTolerance;
     }
-    // `auto` judges the first order as in any call; if it keeps the numbering, it judges later orders, too
+    // `auto` judges the first order as in any call; if `auto` then keeps the numbering, it judges later
+    // orders, too
     const std::string asked = is_first ? options_.method : next.method;
     Order order = hood.order_by(asked, options);
     last_seconds = stopwatch.seconds();

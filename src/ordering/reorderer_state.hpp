@@ -37,7 +37,7 @@ struct Observed {
 
 inline constexpr Index kMostInterval = 1 << 20;  ///< largest number of updates from one new order to the next
 
-/// What a `Reorderer` keeps from update to update.
+/// The data that a `Reorderer` keeps from update to update.
 struct ReordererState {
   std::uint8_t begun = 0;
   Index count = 0;      ///< vertices of the last update

@@ -92,7 +92,7 @@ class Bisection {
   }
 
   /// Searches the component of `start` breadth first, and puts its vertices into the queue by rising
-  /// distance. Each search needs a larger mark than all searches before it.
+  /// distance. `mark` must exceed the marks of these vertices.
   void search(Index start, Index mark) {
     queue_.assign(1, start);
     reached_[start] = mark;

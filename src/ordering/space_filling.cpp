@@ -111,8 +111,7 @@ std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int a
 
 namespace {
 
-/// How Hilbert's curve runs through a cube of the lattice: the curve's axes, reflections and direction in the
-/// cube.
+/// The course of Hilbert's curve through a cube of the lattice: the curve's axes, reflections and direction.
 struct CurveState {
   std::array<int, 3> axis{0, 1, 2};  ///< the lattice's axis for each axis of the curve
   unsigned reflected = 0;            ///< a bit for each axis of the curve
@@ -121,7 +120,7 @@ struct CurveState {
   constexpr bool operator==(const CurveState&) const = default;
 };
 
-/// A step into a part of a cube: a half, quarter or eighth, or a part of such a part. It has two numbers: the
+/// A step into a part of a cube: a quarter or eighth, or a part of such a part. It has two numbers: the
 /// part's number along the curve in the cube, and the number of the part's state.
 class CurveStep {
  public:
@@ -248,7 +247,7 @@ namespace {
 
 constexpr int kFirstBits = 30;  // leading bits of a point's number along a curve; few points share them all
 
-/// Sorts points by their number along a curve, which `key(cell, axes, scales)` returns; ties by place. Sorts
+/// Sorts points by their number along a curve, which `key(cell, axes, scales)` returns; ties by index. Sorts
 /// first by the number of the first scales. Only points with equal numbers need the number of all scales.
 /// O(n) if few numbers are equal.
 template <class Key>

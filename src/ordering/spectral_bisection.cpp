@@ -17,7 +17,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kSmall = 4000;  // on smaller pieces smoothed distances cut as well as Fiedler vectors, faster
+constexpr Index kSmall = 4000;    // smaller pieces: smoothed distances cut as well as Fiedler vectors, faster
 constexpr double kTolerance = 1;  // a rough vector suffices for the place of a cut
 constexpr int kMaxIterations = 30;
 constexpr double kThickness = 0.8;  // least thickness of slabs, see `cut`: less saves time, lengthens spans

@@ -65,7 +65,7 @@ AccessStream::Array AccessStream::place(Offset bytes) {
 
 namespace {
 
-/// Number of halvings from which on a mesh is large: a smaller part of assembly is then followed.
+/// A mesh with this many halvings or more is large: a smaller part of its assembly is followed.
 constexpr int kLargeFrom = 4;
 
 /// Predicts the lengths of loops and counts the wrong predictions. Models a processor that remembers some

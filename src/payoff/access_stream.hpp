@@ -235,7 +235,7 @@ class AccessStream {
     return rows;
   }
 
-  /// Returns the corners of a simplex, or of the last if the number is too large.
+  /// Returns the corners of a simplex; of the last simplex if the number is too large.
   [[nodiscard]] std::span<const Index> later(Offset simplex) const {
     return simplices_[std::min(simplex, simplices_.size() - 1)];
   }
@@ -283,7 +283,7 @@ struct RunReuse : Reuse {
   bool operator==(const RunReuse&) const = default;
 };
 
-/// Returns the reuse of any run but the first of a kernel that runs repeatedly. O(accesses · log distance)
+/// Returns the reuse in each run but the first of a kernel that runs repeatedly. O(accesses · log distance)
 /// time; about 13 bytes of memory for each line, a fifth of the kernel's own memory. With `halvings` > 0 the
 /// reuse is estimated from a share 2^-halvings of the lines (see ReuseSample), which is faster; products with
 /// a matrix use two halvings fewer. From four halvings on, products use only one fewer, assembly uses one
@@ -308,7 +308,7 @@ using KernelReuse = std::array<RunReuse, kKernels.size()>;
 /// Returns the reuse of all kernels. Each thread takes one kernel at a time.
 KernelReuse reuse_of_kernels(const CsrGraph& graph, SimplicesRef simplices, int halvings = 0);
 
-/// Returns the reuse of the product with a matrix; the entries of other kernels are empty.
+/// Returns the reuse of the product with a matrix; that of the other kernels is empty.
 KernelReuse reuse_of_kernels(const EntryPattern& pattern, int halvings = 0);
 
 /// Returns the reuse of all kernels of a mesh or matrix (see kernels_of).

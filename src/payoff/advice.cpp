@@ -44,7 +44,7 @@ RunReuse reuse_in(const KernelInput& order, Kernel kernel, int halvings) {
                            : reuse_of(kernel, order.graph(), order.simplices(), halvings);
 }
 
-/// Returns the predictions for all orders. Threads take turns at the pairs of a kernel and an order.
+/// Returns the predictions for all orders. Each thread takes one kernel in one order at a time.
 std::vector<KernelMilliseconds> predictions(const std::vector<KernelInput>& orders,
                                             const AdviceOptions& options) {
   report("predict");
@@ -112,8 +112,8 @@ bool are_one(const Candidate& a, const Candidate& b) {
   return a.vertices.name == b.vertices.name && a.elements.name == b.elements.name;
 }
 
-/// Returns the logarithm of the time in an order divided by the time in the mesh's own order, averaged over
-/// the kernels of a workload. Throws InvalidArgument if the workload has no kernels.
+/// Returns log(time in an order / time in the mesh's own order), as the mean over the kernels of a workload.
+/// Throws InvalidArgument if the workload has no kernels.
 double cost_for(Workload workload, const Advice& advice, const OrderCosts& costs) {
   double sum = 0;
   int kernels = 0;

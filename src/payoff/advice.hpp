@@ -32,7 +32,7 @@ struct AdviceOptions {
   std::vector<MeshMethods> methods = {};  ///< as in `PayoffOptions`
   MachineChoice machine = choose_machine();
   KernelSet kernels = KernelSet::plain;  ///< tuned kernels can only be measured
-  int threads = 1;                       ///< threads that share a run; to predict, `machine.model.threads`
+  int threads = 1;                       ///< threads that share a run; `machine.model.threads` to predict
   Caches caches = {};                    ///< caches to predict for; empty: those of the machine
   OrderOptions ordering = {};
   std::string format = {};   ///< format in which the mesh will be written; empty: `Mesh::format`

@@ -106,7 +106,7 @@ CsrGraph joined_to_next(const Reaches& reaches) {
   return graph;
 }
 
-/// Returns points at distances of about 1, such that no four consecutive points lie in a plane.
+/// Returns points: each is about 1 from the next, and no four consecutive ones lie in a plane.
 std::vector<Point> helix(Index n) {
   std::vector<Point> points(static_cast<std::size_t>(n));
   for (Index v = 0; v < n; ++v) points[v] = {std::cos(1.0 * v), std::sin(1.0 * v), 0.25 * v};

@@ -146,8 +146,9 @@ Steadiness steadiness_of(std::span<const Steadiness> measurements) {
 /// Two sizes that differ by less than this factor count as the same cache.
 constexpr double kSameCache = 1.6;
 
-/// Returns the caches that costs belong to. A found cache within a factor of `kSameCache` of a reported
-/// cache gets the reported size. The last cache does not, because a thread shares it with others.
+/// Returns the caches that costs belong to. A found cache within a factor of `kSameCache` of a reported cache
+/// gets the reported size. The last found cache never gets the last reported size: a thread shares that cache
+/// with others.
 Caches effective_caches(const FoundCaches& found, const Caches& reported) {
   Caches caches;
   for (std::size_t i = 0; i < found.levels.size(); ++i) {
@@ -187,7 +188,7 @@ void measure_memory(const CalibrationEffort& effort, Calibration& calibration) {
                                        : calibration.read_bandwidth;
 }
 
-/// Times all orders of a lattice in the same rounds. Times the second to last order twice, at different
+/// Times all orders of a lattice in the same rounds. Times the last order but one twice, at different
 /// addresses.
 void time_small(const CalibrationLattice& lattice, int number, double seconds, std::span<Runs> runs) {
   const std::size_t twice = lattice.orders.size() - 2;
@@ -206,8 +207,8 @@ void time_small(const CalibrationLattice& lattice, int number, double seconds, s
   }
 }
 
-/// Times the orders of a lattice one after another while the next should end before the stopwatch shows
-/// `seconds`, but at least the best and the worst order. Times these two on all threads as well.
+/// Times the best and the worst order of a lattice, then others while the next should end before the
+/// stopwatch shows `seconds`. Times the best and the worst on all threads as well.
 void time_large(CalibrationLattice lattice, int number, const Stopwatch& since_start, double seconds,
                 std::span<Runs> runs) {
   std::vector<LatticeOrder>& orders = lattice.orders;
@@ -225,7 +226,7 @@ void time_large(CalibrationLattice lattice, int number, const Stopwatch& since_s
   }
 }
 
-/// Returns a row for each run: the share of its time that each of its counts would take at 1 ns a count.
+/// Returns for each run a row: its counts, at 1 ns a count, as shares of the run's time.
 Rows shares_of(std::span<const TimedReuse> runs, const Caches& caches) {
   const std::array<Offset, 4> sizes = sizes_that_cost(caches);
   Rows rows{.columns = CostRow{}.size()};

@@ -98,7 +98,7 @@ Latencies latencies_beyond(const FoundCaches& found, const Caches& caches);
 FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies,
                       const KernelCosts* like = nullptr);
 
-/// Multiplies all costs by the one factor that fits the runs best.
+/// Returns the costs times the one factor that fits the runs best.
 FittedCosts scale_costs(std::span<const TimedReuse> runs, const KernelCosts& costs, const Caches& caches);
 
 /// The result of a quick check of a machine against its calibration.

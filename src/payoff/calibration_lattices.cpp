@@ -54,7 +54,7 @@ std::vector<LatticeOrder> orders_for(Index vertices, Offset row_bytes, const Cac
     if (2 * window > 3 * result.back().window) result.push_back({window});
   }
   result.push_back({vertices});
-  // the last order is the costliest one
+  // one place is for the costliest order
   const std::size_t kept = std::max<std::size_t>(3, most) - 1;
   if (result.size() > kept) {
     std::vector<LatticeOrder> some;

@@ -15,8 +15,8 @@ namespace meshorder {
 /// (RunReuse::turns). A jump is a miss that no hardware prefetcher predicts; its cost is added to that of the
 /// miss. Misses and jumps are counted for four caches: the first level, the second level, half of the last
 /// level and all of the last level. A thread shares the last level, so misses begin to cost when half of it
-/// is full. Jumps that miss the whole last cache are first touches out of order; a sweep makes at most one
-/// for each line of its vectors.
+/// is full. Jumps that miss the whole last cache are first touches out of order: at most one in a run for
+/// each line of the vectors.
 struct KernelCosts {
   double access = 0.0;
   std::array<double, 4> miss{};

@@ -96,7 +96,7 @@ class KernelBench : public Polymorphic {
 /// matrix: they need 3×3 blocks or elements.
 std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const KernelInput& input, int threads = 1);
 
-/// Does the same for a mesh in its own order; also throws as `KernelInput`.
+/// Does the same for a mesh in its own order; throws also as KernelInput does.
 inline std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const Mesh& mesh,
                                                     const CsrGraph& graph, int threads = 1) {
   return prepare_kernels(kernels, KernelInput(mesh, graph), threads);

@@ -64,7 +64,7 @@ RunTime sample(KernelBench& bench, Kernel kernel, const Plan& plan) {
   });
 }
 
-/// Runs stretches of a kernel's elements, if it can; returns the time of a whole run, computed from theirs.
+/// Returns a plan with the time of a whole run, computed from a run in stretches; empty if there is none.
 Plan plan_by_stretches(KernelBench& bench, Kernel kernel, const TimingOptions& options) {
   Plan plan;
   double share = 0;

@@ -21,8 +21,8 @@ struct TimingOptions {
   /// `KernelTimes::share`.
   bool in_stretches = false;
   int max_rounds = 25;
-  /// Least length of a sample. A kernel that takes less is repeated, as in a solver, and finds the data of
-  /// its last run in the caches.
+  /// Least seconds of a sample. A kernel that takes less is repeated, as in a solver, and finds the data of
+  /// its previous run in the caches.
   double sample_seconds = 0.02;
   /// Count the calling thread's processor time instead of elapsed time: for kernels on one thread.
   bool processor_time = false;
@@ -62,9 +62,9 @@ using PrepareOrder = std::function<std::unique_ptr<KernelBench>(Index)>;
 /// that changes of the machine's speed affect all orders alike. A round takes a sample of every kernel in
 /// every order, kernel by kernel; the next round begins with the next order. The first runs of a sample find
 /// another order's data in the caches and are not counted; their number is `runs_to_settle`. If a run takes
-/// at least five times `sample_seconds`, there are none, and the last run of the plan is the sample of
-/// the first round. If a kernel takes 0.1 s or more in an order, and three times as long as in the fastest
-/// order, the run that planned its samples is its only sample there. With `in_stretches` this run is one by
+/// at least five times `sample_seconds`, all runs count, and the last run of the plan is the sample of the
+/// first round. If a kernel takes 0.1 s or more in an order, and three times as long as in the fastest order,
+/// the run that planned its samples is its only sample there. With `in_stretches` this run is one by
 /// `KernelBench::run_stretches`, if that takes 0.05 s or more. The first bench is the reference of the
 /// speedups.
 Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options = {});

@@ -56,8 +56,8 @@ Caches caches_in_sysconf() {
   return ascending(sizes);
 }
 
-/// Returns the hardware threads of a processor's core in the system's notation. The text is the same for all
-/// hardware threads of a core.
+/// Returns a text that is the same for all hardware threads of a core: their numbers, as the system lists
+/// them.
 std::string core_of(int processor) {
   std::ifstream in("/sys/devices/system/cpu/cpu" + std::to_string(processor) +
                    "/topology/thread_siblings_list");

@@ -59,7 +59,7 @@ void fill_caches(std::span<const std::uint64_t> words, std::size_t most) {
 /// Cache levels that explain the measured latencies.
 struct Explanation {
   std::vector<std::size_t> sizes;  ///< for each level, the index of the probe point with its size; ascending
-  std::vector<double> costs;       ///< ns: a hit in the first level, then the extra cost of missing each
+  std::vector<double> costs;       ///< ns: a hit in the first level, then what missing each level adds
   double error = std::numeric_limits<double>::infinity();  ///< the sum of squares of relative errors
 };
 
@@ -82,8 +82,8 @@ Explanation explained(std::span<const ProbePoint> points, const std::vector<std:
   return result;
 }
 
-/// Returns whether missing each level costs enough, relative to the levels before it, to be a cache
-/// and not an effect of page tables or a disturbance.
+/// Returns whether each level is a cache, not an effect of page tables or a disturbance: missing it must add
+/// more than a quarter to the latency.
 bool has_steps(const Explanation& explanation) {
   constexpr double kLeastStep = 0.25;
   double before = explanation.costs.front();
@@ -167,7 +167,7 @@ FoundCaches find_caches(std::span<const ProbePoint> points, std::size_t most) {
   if (points.empty()) throw InvalidArgument("caches: no latencies are given");
   Explanation best = explained(points, {});
   for (std::size_t levels = 1; levels <= most; ++levels) {
-    // one more level must reduce the error by a quarter
+    // one more level must reduce the error by more than a quarter
     constexpr double kLeastGain = 0.75;
     Explanation next = best_explanation(points, levels);
     if (next.error < kLeastGain * best.error) best = std::move(next);

@@ -19,7 +19,7 @@ namespace meshorder {
 /// Options of `compare_orders`.
 struct MeshComparisonOptions {
   std::vector<MeshMethods> methods = {};  ///< orders besides the mesh's own
-  bool only_new = false;                  ///< leave out methods after `auto` that equal its choice
+  bool only_new = false;                  ///< leave out methods after `auto` that `auto` chose
   OrderOptions ordering = {};
   KernelSet kernels = KernelSet::plain;
   int threads = 1;  ///< the kernels run on one thread and, if there are more, on all of them
@@ -45,7 +45,7 @@ struct ComparedMeshOrder {
 /// Kernels measured with a number of threads.
 struct KernelTable {
   int threads = 1;
-  std::vector<OrderTimes> orders;  ///< the mesh's own first
+  std::vector<OrderTimes> orders;  ///< the first is the mesh's own
   OrderTimes band;
   Steadiness steadiness;
   std::vector<double> redundancy;  ///< KernelBench::redundancy of each order
@@ -55,7 +55,7 @@ struct KernelTable {
 struct MeshComparison {
   KernelSet kernel_set = KernelSet::plain;
   Workload workload = Workload::all;           ///< what the orders optimise
-  std::vector<ComparedMeshOrder> orders;       ///< the mesh's own first
+  std::vector<ComparedMeshOrder> orders;       ///< the first is the mesh's own
   std::optional<MeshMethods> auto_keeps = {};  ///< the methods that `auto` chose if it kept the first order
   EdgeSpan band_span;
   std::vector<KernelTable> kernels;                ///< on one thread, then on several

@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// A kernel that runs in stretches computes one of `kEvery` elements.
+/// A kernel that runs in stretches computes one in `kEvery` elements.
 constexpr std::size_t kEvery = 8;
 
 /// Calls `run(elements)` for all elements; if `in_stretches`, for 16 stretches that start at equal distances.

@@ -37,7 +37,7 @@ class PlainBench final : public KernelBench {
   void prepare_edges(const KernelInput& input);
   void prepare_vertices(const KernelInput& input);
 
-  /// Runs one thread's part of a kernel; if `in_stretches`, on one of `kEvery` elements (see for_stretches).
+  /// Runs one thread's part of a kernel; if `in_stretches`, on one in `kEvery` elements (see for_stretches).
   template <class Owned>
   void run_part(Kernel kernel, const Owned& owned, const Share& share, bool in_stretches);
   void run_parts(Kernel kernel, bool in_stretches);

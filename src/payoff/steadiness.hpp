@@ -25,9 +25,9 @@ std::string reason_to_doubt(const Steadiness& steadiness);
 /// fewer than two samples.
 double repeat_difference(const std::vector<double>& samples);
 
-/// Returns how many successive runs a kernel needs to settle in the caches, at least 1: the run after them
-/// takes at most 5 % longer than the fastest of `seconds`. Up to ten are needed if the last cache keeps only
-/// a part of what the second level evicts; the second run may then be slower than the first.
+/// Returns after how many successive runs, at least 1, a kernel has settled in the caches: the next run takes
+/// at most 5 % longer than the fastest of `seconds`. 1 if no run does. Up to ten are needed if the last cache
+/// keeps only a part of what the second level evicts; the second run may then be slower than the first.
 int runs_to_settle(const std::vector<double>& seconds);
 
 /// Returns whether a kernel has settled: it ran at least four times, and each of the last three runs took at

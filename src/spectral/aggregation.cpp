@@ -15,7 +15,7 @@ struct Counts {
   std::vector<double> slacks;   ///< one for each aggregate
 };
 
-/// A vertex that joins an aggregate through an edge to a founding member.
+/// A vertex that joins an aggregate through an edge to its founder or to a founding member.
 struct Joining {
   Index vertex;
   Index through;

@@ -52,7 +52,7 @@ struct Members {
   }
 };
 
-/// @param rows  only the vertices 0 … rows−1 are listed
+/// Returns the vertices 0 … rows−1 of each aggregate.
 Members members_of(const Aggregation& aggregation, Index rows);
 
 }  // namespace meshorder

@@ -58,7 +58,7 @@ struct LaplacianRows {
   }
 };
 
-/// Joins the rows of all parts, one part after the other. Consumes them.
+/// Joins the rows of all parts, one part after the other.
 Laplacian joined(std::vector<LaplacianRows> parts) {
   Laplacian result;
   Offset rows = 0;

@@ -23,7 +23,7 @@ struct SparseRows {
 SparseRows transposed(const SparseRows& a);
 
 /// Returns the Galerkin product Pᵀ L P for the piecewise constant P of an aggregation: the weight of an edge
-/// is the sum of all weights between two aggregates. O(n + edges), on all threads.
+/// is the sum of all weights between its two aggregates. O(n + edges), on all threads.
 Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggregation& aggregation);
 
 /// The same for some rows of a larger graph. The vertices of these rows have the first numbers.

@@ -51,7 +51,7 @@ class Search {
   GraphRef graph_;
   ComponentNumbering numbering_;
   Index component_start_ = 0;
-  Index head_ = 0;  ///< place in the order of the first vertex whose row is still to be read
+  Index head_ = 0;  ///< place, in the order, of the first vertex whose row is not yet read
   Index tail_ = 0;  ///< number of vertices in the order so far
   std::vector<std::vector<Index>> found_{1};  ///< the vertices that each batch found, in the order of its
                                               ///< rows
@@ -76,7 +76,7 @@ void Search::number_component(Index start) {
   }
 }
 
-/// Reads the rows of the next batch, and appends the new vertices in them.
+/// Reads the rows of the next batch, and appends the rows' new vertices.
 void Search::go_through_batch() {
   std::vector<Index>& found = found_.front();
   found.clear();
@@ -115,10 +115,10 @@ void Search::go_through_wave(Index batches) {
   tail_ = tails.back();
 }
 
-/// Visits the rows from order[head_ + begin] on, and marks their vertices that have no number and no mark of
-/// an earlier row. If two threads mark a vertex at once, the mark that is written later stays; both threads
-/// have the vertex among their claims (see `settle_claims`). An atomic exchange would make the processor wait
-/// for one vertex at a time.
+/// Visits the rows of order[head_ + begin … head_ + end − 1], and marks their vertices that have no number
+/// and no mark of an earlier row. If two threads mark a vertex at once, the mark that is written later stays;
+/// both threads have the vertex among their claims (see `settle_claims`). An atomic exchange would make the
+/// processor wait for one vertex at a time.
 void Search::claim_neighbours(Index batch, Index begin, Index end) {
   const std::span<const Index> order(numbering_.order.data() + head_, tail_ - head_);
   claims_[batch].clear();

@@ -31,8 +31,8 @@ struct FiedlerVectors {
   bool complete = true;                                ///< false: the call's time limit ended an iteration
 };
 
-/// Computes the Fiedler vector of every connected component, as the public `fiedler_vector` describes it, for
-/// a clean graph.
+/// Computes the Fiedler vector of every connected component of a clean graph, as the public `fiedler_vector`
+/// describes it.
 ///
 /// Components of up to 60 vertices go to a dense eigensolver. Larger components are numbered for speed (see
 /// ComponentNumbering) and coarsened into a `Hierarchy`. The first vectors are exact on a coarsest graph of

@@ -10,8 +10,8 @@ namespace meshorder {
 constexpr double kDoubtful = 0.25;  ///< an aggregate hides nothing if eigenvalue · slack is at most this
 
 /// Returns whether an aggregate may hide a vector whose Rayleigh quotient is smaller than `eigenvalue`:
-/// coarser graphs then do not show it. If false, every such vector is nearly constant on all aggregates: the
-/// part that varies within aggregates has at most half of the vector's squared norm.
+/// coarser graphs then do not show the vector. If false, every such vector is nearly constant on all
+/// aggregates: the part that varies within aggregates has at most half of the vector's squared norm.
 ///
 /// An aggregate hides nothing in three cases:
 /// - its slack is small, see `aggregate`;

@@ -63,7 +63,7 @@ class Hierarchy {
   template <int M>
   void cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x, CycleWorkspace<M>& workspace) const;
 
-  /// The same by two cycles, or by one on the coarsest level: the coarse correction of the next finer level.
+  /// The same by two cycles, or by one on the coarsest level. The result corrects x on the next finer level.
   /// Overwrites b.
   template <int M>
   void two_cycles(int level, VectorBlock<M>& b, VectorBlock<M>& x, VectorBlock<M>& second_x,

@@ -25,7 +25,7 @@ int find_lower(EigenProblem& problem, double least, const LobpcgOptions& options
 /// equal, as for cliques, even random vectors have a small residual. Coarse graphs find the right eigenvalue
 /// unless an aggregate hides it (see `EigenProblem::may_hide`). If that is possible, `find_lower` searches,
 /// and the iteration continues from its result. The search takes about as long as the iteration; finding that
-/// none is needed costs little.
+/// no search is needed costs little.
 ///
 /// @param seed   of the random vectors
 /// @return `iterations` includes those of searches that found a lower eigenvalue

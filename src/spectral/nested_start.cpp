@@ -14,7 +14,7 @@ namespace {
 
 constexpr Index kFewVertices = 300;          // a search on this many vertices takes a third of a millisecond
 constexpr Index kSmallShare = 50;            // a search on a graph of n / 50 vertices costs little
-constexpr double kSmoothedHides = 1.0 / 16;  // larger graphs: search if a value below λ times this may hide
+constexpr double kSmoothedHides = 1.0 / 16;  // larger graphs: search if a value below this · λ may hide
 constexpr double kNearlyEqual = 0.9;         // values above this share of an eigenvalue count as equal
 
 }  // namespace

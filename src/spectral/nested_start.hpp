@@ -14,7 +14,7 @@ constexpr int kStartColumns = 2;
 using StartBlock = VectorBlock<kStartColumns>;
 
 /// Returns options with a low accuracy, for vectors on a coarse graph: prolongation to the next finer graph
-/// limits their accuracy anyway.
+/// limits the vectors' accuracy anyway.
 [[nodiscard]] LobpcgOptions coarse_search(TimeLimit limit);
 
 /// Returns start vectors on the finest graph. They begin as exact eigenvectors of the coarsest graph and are

@@ -41,7 +41,7 @@ auto in_falling_pieces(Work work) {
 /// breadth first, each chunk has edges only to adjacent chunks, and two colours suffice.
 class RowChunks {
  public:
-  static constexpr Index kLeastRows = 8192;  ///< a chunk should take longer than starting a thread's task
+  static constexpr Index kLeastRows = 8192;  ///< work on a chunk should take longer than starting a task
 
   RowChunks() = default;
 

@@ -34,7 +34,7 @@ namespace meshorder {
 inline namespace v0_3 {
 namespace detail {
 
-/// Describes a value of a range, which is a number T or an std::array<T, width> of numbers.
+/// Traits of the values of a range: numbers, or std::array of `width` numbers.
 template <class T>
 struct Row {
   using Number = T;
@@ -75,7 +75,8 @@ concept Writable = Contiguous<R> && std::ranges::borrowed_range<R> &&
 template <class R>
 concept Borrowed = std::ranges::enable_borrowed_range<std::remove_cvref_t<R>>;
 
-/// Returns the first number of a range of numbers or of arrays of numbers; unspecified for an empty range.
+/// Returns a pointer to the first number of a range of numbers or of arrays of numbers; unspecified for an
+/// empty range.
 template <class R>
 auto first_number(R&& range) noexcept {
   using Value = std::remove_pointer_t<decltype(std::ranges::data(range))>;

@@ -27,7 +27,7 @@ void sort_into_runs(std::span<Index> things, Index size, std::span<const Point> 
   sort_into_runs(things.subspan(left), size, centers);
 }
 
-/// Tests as separating axes the axes of the box and their cross products with the segment.
+/// Tests the axes of the box, and their cross products with the segment, as separating axes.
 bool Box::meets_segment(const Point& a, const Point& b) const {
   constexpr double kSlack = 1e-12;  // far above rounding errors, so that no box is missed
   Point half{};

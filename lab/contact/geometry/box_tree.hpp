@@ -118,8 +118,8 @@ class BoxTree {
   std::vector<Index> things_;
 };
 
-/// Moves the `left` items whose centres have the smallest coordinates to the front, on the axis along which
-/// the centres extend furthest. Among equal coordinates the lowest numbers come first. O(n).
+/// Moves to the front the `left` items whose centres have the smallest coordinates on one axis: that along
+/// which the centres extend furthest. Among equal coordinates the lowest numbers come first. O(n).
 void halve(std::span<Index> things, Index left, std::span<const Point> centers);
 
 /// Orders items so that each run of `size` items is compact, by repeated halving at multiples of `size`.

@@ -10,7 +10,7 @@ namespace {
 
 using On = TrianglePoint::On;
 
-/// Returns the nearest point of the edge from corner k to the next.
+/// Returns the point nearest to x on the edge from corner k to the next corner.
 TrianglePoint nearest_on_edge(const Point& x, const std::array<Point, 3>& corners, int k) {
   const int next = (k + 1) % 3;
   const Point edge = minus(corners[next], corners[k]);

@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-/// The point of a triangle nearest to another point.
+/// The point of a triangle that is nearest to a given point.
 struct TrianglePoint {
   /// The part of the triangle on which the point lies: corner 0 … 2, the edge from corner 0, 1 or 2 to the
   /// next, or the interior.

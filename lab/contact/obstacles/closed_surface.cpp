@@ -173,7 +173,7 @@ class ClosedSurface : public Obstacle {
       const Triangle& corners = triangles_[t];
       const TrianglePoint here =
           nearest_on_triangle(x, points_[corners[0]], points_[corners[1]], points_[corners[2]]);
-      // of equally near triangles takes that with the lowest number, whatever the path through the tree
+      // of equally near triangles, takes the one with the lowest number, whatever the path through the tree
       if (here.squared_distance < best.squared_distance ||
           (here.squared_distance == best.squared_distance && t < triangle)) {
         best = here;
@@ -233,7 +233,7 @@ class ClosedSurface : public Obstacle {
     const Point& normal = face_normals_[entry->triangle];
     const Point way = minus(x, start);
     if (natural.distance > 0.0) {
-      // outside again; but a path along the surface may go in and out by rounding errors
+      // x is outside again; but a path along the surface may go in and out by rounding errors
       const auto exit = std::find_if(entry, on_the_way.end(), [](const Crossing& c) { return !c.in; });
       const double middle = 0.5 * (entry->part + (exit == on_the_way.end() ? 1.0 : exit->part));
       if (!(nearest_point(plus_scaled(start, middle, way)).distance < -touching_)) return std::nullopt;

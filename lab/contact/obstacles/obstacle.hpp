@@ -23,10 +23,10 @@ struct SurfacePoint {
 /// thread-safe.
 class Obstacle : public Polymorphic {
  public:
-  /// Returns the point of the surface nearest to the vertex at `x`, if that is within `reach` (m) or x is
-  /// inside. The vertex was at `from`, outside, when the step began. If the vertex has passed through a thin
-  /// wall, the returned point is on the side of the wall that the vertex came from, and `distance` is
-  /// negative.
+  /// Returns the point of the surface nearest to the vertex at `x`, if the vertex is within `reach` (m) of
+  /// the surface or inside. The vertex was at `from`, outside, when the step began. If the vertex has passed
+  /// through a thin wall, the returned point is on the side of the wall that the vertex came from, and
+  /// `distance` is negative.
   [[nodiscard]] virtual std::optional<SurfacePoint> nearest(const Point& x, const Point& from,
                                                             double reach) const = 0;
 

@@ -49,7 +49,7 @@ struct Padded {
       result.parts[i] = hn::MulAdd(hn::Set(RowTag(), factor), other.parts[i], parts[i]);
     return result;
   }
-  /// Replaces each number by that of `other` if that is smaller (raise_to: larger); NaN replaces nothing.
+  /// Replaces each number by that of `other` if that is smaller (raise_to: larger). A NaN replaces nothing.
   HWY_INLINE void lower_to(const Padded& other) {
     MESHORDER_UNROLL
     for (Index i = 0; i < kParts; ++i)

@@ -45,7 +45,7 @@ class BranchMotions {
 
  private:
   std::vector<Offset> offsets_{0};
-  AlignedVector<Corner> corners_;  ///< of each branch, none twice
+  AlignedVector<Corner> corners_;  ///< of each branch, each corner once
   std::vector<Shape> shapes_;
   std::vector<Motion> motions_;
 };

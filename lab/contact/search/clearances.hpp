@@ -23,7 +23,8 @@ class Clearances {
   Clearances(TetrahedronLeaves& tetrahedra, BranchMotions& motions, std::span<PointCluster> clusters,
              std::span<const Point> rest);
 
-  /// Returns the points of cluster c that may be inside tetrahedra of the branch; all if nothing is known.
+  /// Returns the points of cluster c that may be inside tetrahedra of the branch; all points if no clearances
+  /// from the branch are known.
   [[nodiscard]] std::uint64_t in_doubt(Index c, Index branch, const PointCluster& cluster,
                                        const BranchMotions& motions) const;
 

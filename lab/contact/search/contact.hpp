@@ -20,7 +20,7 @@ struct Contact {
 
   std::array<Index, 4> vertices{kAbsent, kAbsent, kAbsent, kAbsent};
   std::array<double, 4> weights{};
-  Point normal{};         ///< of length 1, out of the obstacle
+  Point normal{};         ///< of length 1, out of the obstacle or the body
   double offset = 0.0;    ///< m
   double friction = 0.0;  ///< Coulomb's coefficient
   std::int32_t with = 0;  ///< number of the obstacle; −1 for the body itself

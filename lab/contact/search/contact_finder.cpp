@@ -12,7 +12,7 @@
 namespace meshorder {
 namespace {
 
-/// Number of neighbours in a cluster: one distance can show that all of them are out of reach.
+/// Number of neighbouring vertices in a cluster: one distance can show that all are out of reach.
 constexpr Index kInCluster = 64;
 
 Contact contact_with(Index vertex, const SurfacePoint& place, double friction, std::int32_t obstacle) {
@@ -35,7 +35,7 @@ bool out_of_reach(const Obstacle& obstacle, const Box& box, double reach) {
   return obstacle.distance(center) > kAboveRounding * (radius + reach);
 }
 
-/// Calls `visit(cluster)` for clusters begin … end − 1 that are not out of reach of the obstacle.
+/// Calls `visit(cluster)` for those of clusters begin … end − 1 that may be within reach of the obstacle.
 /// Neighbouring clusters that are out of reach are skipped together.
 template <class Visit>
 void visit_within_reach(const Obstacle& obstacle, double reach, std::span<const Box> boxes, Index begin,

@@ -59,7 +59,7 @@ class ContactFinder {
  private:
   /// Vertices of the surface that are searched together.
   struct Cluster {
-    std::vector<Index> near;  ///< obstacles
+    std::vector<Index> near;  ///< numbers of the obstacles within reach
     std::vector<Contact> found;
     double deepest = 0.0;
   };

@@ -21,7 +21,8 @@ class ContactSet {
 
   /// Finds the contacts at these positions, in ContactFinder's order. `forces` are the forces of contacts(),
   /// empty if nothing was solved since `begin`. Returns whether a contact that was found is violated by more
-  /// than `tolerance`, m. Contacts with the body itself keep a gap of a tenth of `tolerance`.
+  /// than `tolerance`, m. The gap required of contacts with the body itself is at most a tenth of
+  /// `tolerance`.
   bool update(std::span<const double> positions, std::span<const double> forces, double tolerance);
 
   [[nodiscard]] std::span<const Contact> contacts() const noexcept { return contacts_; }

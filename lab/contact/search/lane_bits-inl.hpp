@@ -21,7 +21,7 @@ namespace meshorder::HWY_NAMESPACE {
 using Floats = hn::CappedTag<float, kLeaf>;
 inline constexpr Index kFloats = static_cast<Index>(MaxLanes(Floats()));
 
-/// Returns a mask of at most 16 lanes as bits, the first lane lowest.
+/// Returns a mask of at most 16 lanes as bits, the first lane as the lowest bit.
 template <class D, class Mask>
 HWY_INLINE std::uint32_t bits_of(D d, Mask mask) {
   alignas(8) std::uint8_t bytes[8] = {};

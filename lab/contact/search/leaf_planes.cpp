@@ -105,7 +105,7 @@ struct LeafLanes {
     }
   }
 
-  /// Returns, for each tetrahedron, the smallest height over its four planes.
+  /// Returns, for each tetrahedron, the smallest height of the point over the four planes.
   HWY_INLINE FloatVector height(float x, float y, float z) const {
     const Floats d;
     const FloatVector p[3] = {hn::Set(d, x), hn::Set(d, y), hn::Set(d, z)};

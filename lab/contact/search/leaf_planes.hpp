@@ -19,11 +19,12 @@ struct LeafHit {
 /// Computes the planes of a leaf at `positions`. The leaf's box must be up to date.
 void update_planes(TetrahedronLeaves& tetrahedra, Index leaf, std::span<const double> positions);
 /// Lowers the clearances of the task's points; `clearances` has one number for each point of the cluster. A
-/// point's clearance is its smallest distance from the leaf's tetrahedra, without those of which it is a
-/// corner. The distance from a tetrahedron is the largest signed distance from its planes, negative inside.
+/// point's clearance is a lower bound of its distance from the leaf's tetrahedra of which it is no corner:
+/// the smallest, over these, of the largest signed distance out of a plane, by normals no longer than 1.
 void lower_clearances(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
                       std::span<const double> positions, std::span<float> clearances);
-/// Appends a hit for each point of the task inside all planes of a tetrahedron of which it is no corner.
+/// Appends a hit for each point of the task that is inside all planes of a tetrahedron and is none of its
+/// corners.
 void hits_of(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
              std::span<const double> positions, std::vector<LeafHit>& hits);
 

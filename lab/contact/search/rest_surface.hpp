@@ -26,8 +26,8 @@ class RestSurface {
 
   /// Returns the point of the surface nearest to x, among triangles without the corner `left_out`. Of several
   /// triangles that are equally near (to 1e-9), takes the one that faces x most; the numbering of triangles
-  /// decides only between mirror images. The triangle is kNone if there is none to find. `within` is an upper
-  /// bound of the distance, m; a small bound saves time.
+  /// decides only between mirror images. The result's triangle is kNone if no triangle was found. `within` is
+  /// an upper bound of the distance, m; a small bound saves time.
   [[nodiscard]] Place nearest(const Point& x, Index left_out = kNone,
                               double within = std::numeric_limits<double>::infinity()) const;
 

@@ -43,7 +43,7 @@ RestSurface::Place SelfContact::way_out(const VertexInside& inside) const {
   const std::array<Index, 4> corners = search_.corners(inside.tetrahedron);
   Point place{};
   for (int k = 0; k < 4; ++k) place = plus_scaled(place, inside.weights[k], rest_[corners[k]]);
-  // upper bound: the distance to any corner on the surface, which has a triangle without the vertex
+  // upper bound: the distance to any corner on the surface; each has a triangle without the vertex
   double within = std::numeric_limits<double>::infinity();
   for (const Index corner : corners) {
     if (on_surface_[corner]) within = std::min(within, kAboveRounding * norm(minus(place, rest_[corner])));

@@ -35,7 +35,7 @@ struct PointCluster {
   std::array<Index, kMaxPoints> vertices{};  ///< the last vertex repeats up to the end
   alignas(64) std::array<std::array<double, kMaxPoints>, 3> positions{};   ///< x, y, z of each
   alignas(64) std::array<std::array<float, kMaxPoints>, 3> coordinates{};  ///< the same, rounded
-  std::array<float, 3> lower{}, upper{};  ///< their box; upper < lower without points
+  std::array<float, 3> lower{}, upper{};  ///< box of the points; upper < lower if all are NaN
 
   /// Makes a cluster of 1 … kMaxPoints vertices.
   explicit PointCluster(std::span<const Index> some);
@@ -87,7 +87,8 @@ void update_points(PointCluster& cluster, std::span<const double> positions);
 /// Sets `branches` to those whose box meets the cluster's box, ascending.
 void branches_at(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,
                  std::vector<Index>& branches);
-/// Appends a task for each leaf of the branch whose box contains points of the cluster in the mask `points`.
+/// Appends a task for each of the branch's leaves whose box contains points of the cluster that are in the
+/// mask `points`.
 void leaves_at(const TetrahedronLeaves& tetrahedra, Index branch, const PointCluster& cluster,
                std::uint64_t points, std::vector<LeafTask>& tasks);
 

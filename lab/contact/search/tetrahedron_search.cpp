@@ -78,7 +78,7 @@ std::vector<PointCluster> clusters_of(std::span<const Index> vertices, std::span
   return clusters;
 }
 
-/// Calls `work(i)` for 0 … n−1, on all threads.
+/// Calls `work(i)` for i = 0 … n − 1, on all threads.
 template <class Work>
 void for_each_number(Index n, Index at_once, Work work) {
   for_each_chunk(n, at_once, [&](Index /*chunk*/, Index begin, Index end) {

@@ -18,8 +18,8 @@ namespace {
 constexpr double kSoftness = 0.01;
 // after this many rounds of tangential bounds without progress, the next round is the last
 constexpr int kMaxFailures = 3;
-// An eighth of the multiplications is reserved for the last round. Each earlier round takes half of the
-// multiplications that are left.
+// An eighth of the multiplications is reserved for the last round. Each earlier round takes at most half of
+// the multiplications that are left.
 constexpr int kPartOfLast = 8;
 
 /// The operator S = C A⁻¹Cᵀ of the contacts of one call.
@@ -218,7 +218,7 @@ class Solver final : public DualContactSolver<Real> {
     }
   }
 
-  /// Sets the bounds of tangential forces by the normal forces, and projects the forces onto them.
+  /// Sets the bounds of tangential forces by the normal forces, and projects the forces onto these bounds.
   void set_radii(std::span<const Contact> contacts) {
     for (Index k = 0; k < index_size(rows().frictional); ++k) {
       const Index contact = rows().frictional[k];

@@ -29,17 +29,17 @@ struct ContactSolveReport {
 /// coefficient times the normal force, and opposes the motion since `from`.
 ///
 /// Solves the dual problem: the contact forces λ minimise ½λᵀSλ − gᵀλ with S = C A⁻¹Cᵀ and g the depths of
-/// the contacts without forces; then x = A⁻¹(b + Cᵀλ). ("Uzawa" in scenarios means "dual".) A
-/// multiplication by S takes one solve with the part of the factor that contacts reach. minimise_forces needs
-/// few multiplications, since forces start from those of the last call and the preconditioner is the part of
-/// A at the contacts' vertices (the lumped preconditioner of FETI: Farhat, Roux 1991). A call takes two more
-/// solves with the whole factor.
+/// the contacts without forces; then x = A⁻¹(b + Cᵀλ). ("Uzawa" in scenarios means "dual".) A multiplication
+/// by S takes one solve with the part of the factor that contacts reach. minimise_forces needs few
+/// multiplications, since forces start from those of the last call and the preconditioner is the part of A at
+/// the contacts' vertices (the lumped preconditioner of FETI: Farhat, Roux 1991). A call takes one or two
+/// more solves with the whole factor.
 ///
 /// `tolerance` bounds the norm of the projected gradient relative to the norm of the positive depths g: about
 /// the error of the contacts' positions relative to the depth without forces. Where contacts contradict or
 /// repeat each other, each may stay as deep as tolerance / 100 times the distance by which its force moves
-/// its vertex. Then repeated contacts share the force. For contradicting contacts, the solution lies between
-/// them, `converged` is false, and `violation` is the remaining depth.
+/// its vertex. Repeated contacts share the force. For contradicting contacts, the solution lies between them,
+/// `converged` is false, and `violation` is the remaining depth.
 ///
 /// With friction, each round bounds the tangential forces by the last round's normal forces (Tresca's fixed
 /// point; Haslinger 1983), until the forces meet `tolerance` with the bounds that they imply. If the rounds
@@ -64,7 +64,7 @@ class DualContactSolver : public Polymorphic {
   /// Returns the normal force of each contact of the last call, in units of A x, none negative.
   [[nodiscard]] virtual std::span<const double> forces() const = 0;
 
-  /// Forgets the forces of earlier calls; to be called at the start of a step.
+  /// Forgets the forces of earlier calls. Call it at the start of a step.
   virtual void forget() = 0;
 
   [[nodiscard]] virtual std::size_t bytes() const = 0;

@@ -11,11 +11,11 @@ namespace {
 
 // a force counts as on the rim of its disc if (length / radius)² is at least this
 constexpr double kOnRim = 1.0 - 1e-9;
-// share of the residual up to which a step solves for its face, the forces that it selects
+// a step reduces the residual of its face (the forces that it selects) to this share
 constexpr double kFaceTolerance = 0.1;
 // steps allowed without a new minimum of the energy
 constexpr int kPatience = 10;
-// share of the decrease predicted by the gradient that a careful step must reach (Armijo)
+// a careful step must reach this share of the decrease that the gradient predicts (Armijo)
 constexpr double kEnoughFall = 1e-4;
 constexpr double kMinWay = 1e-9;
 
@@ -167,7 +167,7 @@ class Minimiser {
     ++report_.multiplications;
   }
 
-  /// Computes z ≈ (S + stiffening)⁻¹ r on the face. The preconditioner ignores the stiffening along rims.
+  /// Computes z ≈ (S + stiffening)⁻¹ r on the face. Along rims, z is r divided by scale + stiffening.
   void precondition() {
     for (std::size_t i = 0; i < r_.size(); ++i) product_[i] = freedom_[i] == Freedom::all ? r_[i] : 0.0;
     matrix_.precondition(product_, z_);

@@ -29,7 +29,7 @@ class ForceOperator : public Polymorphic {
 };
 
 struct ForceSolveOptions {
-  double tolerance = 0.0;       ///< of the projected gradient's norm, in units of S λ
+  double tolerance = 0.0;       ///< bound of the projected gradient's norm, in units of S λ
   int max_multiplications = 0;  ///< by S
   /// A positive scale of each row of S, such as an estimate of its diagonal entry.
   std::span<const double> scale;

@@ -61,7 +61,7 @@ class RowSweeps {
     const auto run_some = [&](Index begin, Index end) {
       for (Index i = begin; i < end; ++i) work(backwards ? end - 1 - (i - begin) : i);
     };
-    // with only one chunk, a thread would spend most of its time on start-up
+    // a thread with only one chunk would spend most of its time on start-up
     const Index parts = std::clamp<Index>(chunks / 2, 1, tbb::this_task_arena::max_concurrency());
     if (parts == 1) return run_some(0, chunks);
     const auto bound = [&](Index part) { return static_cast<Index>(Offset{chunks} * part / parts); };
@@ -75,7 +75,7 @@ class RowSweeps {
 /// Returns the bounds of the chunks of rows. O(chunks · log rows).
 template <class Value>
 std::vector<Index> chunks_of(const BlockCsrOf<Value>& matrix) {
-  // 0.6 MB in double: chunks so large cost next to nothing, and are enough for any number of threads
+  // 0.6 MB in double: a chunk's overhead is negligible, and there are enough chunks for all threads
   constexpr Offset kChunkBlocks = 8192;
   return balanced_ranges(matrix.offsets, static_cast<Index>(1 + matrix.block_count() / kChunkBlocks));
 }
@@ -227,8 +227,8 @@ class ConjugateGradients {
     return {status, iterations_, residual(), converged ? Index{-1} : largest_vertex(v_.r)};
   }
 
-  /// Reports the first vertex with a number that is not finite: in b and x, then in p, q, r and z, the order
-  /// in which a bad row of the matrix spoils them.
+  /// Reports the first vertex with a number that is not finite. Searches b and x, then p, q, r and z: the
+  /// order in which a bad row of the matrix spoils them.
   [[nodiscard]] SolveReport not_finite() const {
     Index vertex = first_not_finite(b_);
     if (vertex < 0) vertex = first_not_finite(x_);

@@ -38,7 +38,7 @@ struct SolveOptions {
 struct SolveReport {
   SolveStatus status = SolveStatus::converged;
   int iterations = 0;
-  double residual = 0.0;  ///< ‖b − A x‖ / ‖b − A x₀‖; in conjugate_gradients, by the recurrence
+  double residual = 0.0;  ///< ‖b − A x‖ / ‖b − A x₀‖; conjugate_gradients updates b − A x by recurrence
   /// The vertex with the largest residual; after `not_finite`, the first vertex with a number that is not
   /// finite, if any. −1 if the solve converged.
   Index vertex = -1;
@@ -56,10 +56,10 @@ Index largest_vertex(std::span<const double> vector);
 /// are too small for a double count as 0. Throws InvalidArgument if sizes differ or an option is negative.
 ///
 /// `Matrix` is BlockCsrOf or HalfBlockCsrOf (results differ by rounding), of double or float. In float an
-/// iteration reads about half as many bytes, and the solution is that of the rounded matrix, which differs by
-/// up to 6e-8 times the condition number; vectors and sums are in double. HalfBlockCsrOf stores half of the
-/// matrix: in a good order an iteration reads little more than half as many bytes; at most 8 threads share
-/// its 16 slabs.
+/// iteration reads about half as many bytes. The solution is that of the rounded matrix: its relative error
+/// is up to 6e-8 times the condition number. Vectors and sums are in double. HalfBlockCsrOf stores half of
+/// the matrix: in a good order an iteration reads little more than half as many bytes; at most 8 threads
+/// share its 16 slabs.
 template <class Matrix>
 SolveReport conjugate_gradients(const Matrix& matrix, const Preconditioner& preconditioner,
                                 std::span<const double> b, std::span<double> x,

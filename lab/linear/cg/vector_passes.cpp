@@ -15,7 +15,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<double, 8>;
 using Value = hn::Vec<Tag>;
 
-/// Calls `many(i)` for the start i of each full register within 0 … count − 1, then `one(i)` for the rest.
+/// Calls `many(i)` for the start i of each full register within 0 … count − 1, then `one(i)` for each
+/// remaining i.
 template <class Many, class One>
 HWY_INLINE void for_lanes(Offset count, Many many, One one) {
   constexpr Offset kLanes = MaxLanes(Tag());

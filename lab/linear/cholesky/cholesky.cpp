@@ -58,8 +58,8 @@ class Solve {
     return {panels.data() + (begin - panels.begin()), 0, static_cast<Index>(end - begin)};
   }
 
-  /// Returns whether any panel of the task is in the reach. If not, none of the tasks below is: paths from
-  /// there pass through this task.
+  /// Returns whether any panel of the task is in the reach. If not, no panel of the tasks below is: their
+  /// paths to the root pass through this task.
   [[nodiscard]] bool takes_part(Index task) const { return panels_of(factor_.tasks[task]).count > 0; }
 
   template <class Work>
@@ -89,7 +89,7 @@ class Solve {
     sweep_forwards(factor_.view(), panels_of(task), work_);
   }
 
-  /// Calls `copy` for each column of a task and its vertex; prefetches the vertex's numbers in `vector`.
+  /// Calls `copy(column, vertex)` for each column of a task; prefetches the vertices' numbers in `vector`.
   template <class Vector, class Copy>
   void for_columns(const PanelTask& task, Vector vector, Copy copy) const {
     constexpr Index kAhead = 24;

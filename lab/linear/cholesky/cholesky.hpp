@@ -14,25 +14,25 @@ namespace meshorder {
 /// The part of the factor needed for right-hand sides that are 0 except at some vertices: the columns on the
 /// vertices' paths to the roots of the elimination tree (Gilbert 1994), as panels.
 struct FactorReach {
-  std::vector<Index> vertices;  ///< as given
+  std::vector<Index> vertices;  ///< as given to reach_of
   std::vector<Index> panels;    ///< ascending
   Offset entries = 0;           ///< number of entries in these panels
 };
 
-/// The Cholesky factor L D Lᵀ of a symmetric positive definite matrix, which solves A X = B for the
-/// coordinates of all vertices at once. The factor has a fill-reducing order of its own (nested dissection);
-/// vectors are in the order of the matrix. `Real` is the precision of the factor and of vectors, double or
-/// float; the factor is computed in double. Solves run on all threads, with the same bits for any number of
-/// threads. `solve` and `reach_of` use scratch memory of the factor: only one thread may call them at a time.
+/// The Cholesky factor L D Lᵀ of a symmetric positive definite matrix A. Solves A X = B for all coordinates
+/// of the vertices at once. The factor has a fill-reducing order of its own (nested dissection); vectors are
+/// in the order of the matrix. `Real` is the precision of the factor and of vectors, double or float; the
+/// factor is computed in double. Solves run on all threads, with the same bits for any number of threads.
+/// `solve` and `reach_of` use scratch memory of the factor: only one thread may call them at a time.
 template <class Real>
 class CholeskyFactor {
  public:
-  /// Reads the upper half of the matrix. Throws as factor_ldl, for example InvalidArgument for a matrix that
-  /// is not positive definite. For meshes O(n^3/2) operations in the plane and O(n²) in space.
+  /// Reads the upper half of the matrix. Throws as factor_ldl does, for example InvalidArgument for a matrix
+  /// that is not positive definite. O(n^3/2) operations for meshes in the plane, O(n²) in space.
   explicit CholeskyFactor(const SparseMatrix& matrix) : CholeskyFactor(factor_ldl(matrix)) {}
 
-  /// Computes x = A⁻¹ b. Both vectors have kPaddedStride numbers for each vertex (see padded_positions), the
-  /// last of which is 0. b and x may be the same array, but must not overlap otherwise. Throws
+  /// Computes x = A⁻¹ b. Both vectors have kPaddedStride numbers for each vertex (see padded_positions); the
+  /// last number of each vertex is 0. b and x may be the same array, but must not overlap otherwise. Throws
   /// InvalidArgument for other sizes. O(entries).
   void solve(std::span<const Real> b, std::span<Real> x) const;
 

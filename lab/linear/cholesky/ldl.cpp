@@ -15,7 +15,7 @@
 namespace meshorder {
 namespace {
 
-/// CHOLMOD's settings and workspace. Only its modules under the LGPL do the work: the factor is simplicial.
+/// CHOLMOD's settings and workspace. The factor is simplicial: CHOLMOD's modules for that are under the LGPL.
 struct Cholmod {
   cholmod_common common{};
 
@@ -27,7 +27,7 @@ struct Cholmod {
     common.final_ll = 0;
     common.nmethods = 1;
     common.method[0].ordering = CHOLMOD_NESDIS;
-    // size of the parts that are not dissected: smaller ones take longer and save hardly any entries
+    // size of the parts that are not dissected: smaller parts take longer and save hardly any entries
     common.method[0].nd_small = 400;
   }
   ~Cholmod() { cholmod_finish(&common); }

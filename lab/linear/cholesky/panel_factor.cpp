@@ -10,7 +10,8 @@
 namespace meshorder {
 namespace {
 
-/// Smallest cost of a task (see PanelCosts): the larger of kMinCost and this share of the whole cost.
+/// Least cost of a branch that becomes a task: the larger of kMinCost and kMinPart times the whole cost (see
+/// PanelCosts).
 constexpr double kMinCost = 40'000;
 constexpr double kMinPart = 1.0 / 32;
 
@@ -49,7 +50,7 @@ class Builder {
   std::vector<Index> columns_;   ///< for each of these numbers, the column of L
   std::vector<Index> place_of_;  ///< scratch, for some columns: row in the panel, or slot in the task
   PanelFactor<Real> factor_;
-  Offset rows_ = 0, values_ = 0;  ///< in all panels so far
+  Offset rows_ = 0, values_ = 0;  ///< numbers of rows and values in the panels so far
   Index filled_ = 0;              ///< number of panels filled so far
   std::vector<Index> above_;      ///< the column that each slot is for
 
@@ -87,7 +88,7 @@ class Builder {
     }
   }
 
-  /// Fills the panels of the supernode whose last column of L is `top`, which must be the next to fill.
+  /// Fills the panels of the supernode whose last column of L is `top`. Call it in the order of the panels.
   void fill_panels(Index top) {
     std::vector<Index> below;
     for (Offset k = ldl_.offsets[top]; k < ldl_.offsets[top + 1]; ++k) below.push_back(number_[ldl_.rows[k]]);
@@ -121,7 +122,7 @@ class Builder {
     }
   }
 
-  /// Returns the place, in the panel's values, of the entry in row r below the panel and column j; see
+  /// Returns the index, in the panel's values, of the entry at column j and the r-th row below; see
   /// PanelView.
   static Offset place_below(const Panel& panel, Index r, Index j) {
     const Index group = r - r % Panel::kGroup;
@@ -129,8 +130,8 @@ class Builder {
     return panel.width * (panel.width + 1) / 2 + Offset{panel.width} * group + in_group * j + (r - group);
   }
 
-  /// Gives slots to the task whose panels were filled last, one for each row in a later task. Sets the place
-  /// in this task for each slot of its children.
+  /// Gives the task whose panels were filled last a slot for each row that belongs to a later task. Sets the
+  /// place in this task of each slot of its children.
   void give_slots(PanelTask& task) {
     const Index n = factor_.size();
     if (task.first_panel == task.end_panel) {

@@ -10,9 +10,9 @@
 
 namespace meshorder {
 
-/// A part of a solve, independent of tasks that are neither above nor below it in the tree of tasks. A task
-/// adds its contributions to rows above it in its own slots; the task above then adds the slots. So tasks can
-/// run at the same time, and sums have the same order on any number of threads.
+/// A part of a solve, independent of tasks that are neither above nor below it in the tree of tasks. In its
+/// own slots, a task sums its contributions to the rows of tasks above; the task above then adds the slots.
+/// So tasks can run at the same time, and sums have the same order on any number of threads.
 struct PanelTask {
   Index first_column, end_column;
   Index first_panel, end_panel;

@@ -14,7 +14,7 @@ namespace {
 constexpr int kGroup = Panel::kGroup;
 static_assert(kGroup % Vertices<double>::kCount == 0 && kGroup % Vertices<float>::kCount == 0);
 
-/// Computes y = L⁻¹ x for the columns of a panel, with x in `own`; then stores D⁻¹ y there.
+/// Computes y = L⁻¹ x for the columns of a panel, where `own` is x; then sets `own` to D⁻¹ y.
 template <int Width, class Real>
 HWY_INLINE void eliminate(const Real* values, Vertex<Real> (&y)[Width], Real* own) {
   MESHORDER_UNROLL
@@ -62,7 +62,7 @@ struct Forwards {
   }
 };
 
-/// Prefetches the values 4 KB before these; hardware hardly prefetches descending addresses.
+/// Prefetches the numbers 4 KB before `values`; hardware hardly prefetches descending addresses.
 template <int Bytes, class Real>
 HWY_INLINE void ask_for_those_before(const Real* values) {
   constexpr int kBytesAhead = 4096;

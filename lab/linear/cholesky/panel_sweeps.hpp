@@ -5,14 +5,14 @@
 
 namespace meshorder {
 
-/// Adjacent columns of L, and the rows below them in which any of them has an entry.
+/// Adjacent columns of L, and the rows below in which any of these columns has an entry.
 struct Panel {
   static constexpr Index kWidest = 8;
-  static constexpr Index kGroup = 4;  ///< rows
+  static constexpr Index kGroup = 4;  ///< rows in a group
 
-  Index column;     ///< the first
-  Index width;      ///< columns
-  Index row_count;  ///< below the columns
+  Index column;     ///< the first column
+  Index width;      ///< number of columns
+  Index row_count;  ///< number of rows below the columns
   Index parent;     ///< the panel that has the first row below as a column; −1 without rows
   Offset rows;      ///< where the panel's rows begin in PanelView::rows
   Offset values;    ///< where its values begin in PanelView::values
@@ -41,12 +41,12 @@ struct PanelRange {
   [[nodiscard]] Index operator[](Index i) const noexcept { return list == nullptr ? first + i : list[i]; }
 };
 
-/// x ← D⁻¹ L⁻¹ x at the columns of these panels; subtracts their contributions from x at the rows below.
-/// O(entries).
+/// Computes x ← D⁻¹ L⁻¹ x at the columns of these panels; subtracts the columns' contributions from x at the
+/// rows below. O(entries).
 void sweep_forwards(const PanelView<double>& view, const PanelRange& range, double* x);
 void sweep_forwards(const PanelView<float>& view, const PanelRange& range, float* x);
 
-/// x ← L⁻ᵀ x at the columns of these panels; the rows below must hold the solution. O(entries).
+/// Computes x ← L⁻ᵀ x at the columns of these panels; the rows below must hold the solution. O(entries).
 void sweep_backwards(const PanelView<double>& view, const PanelRange& range, double* x);
 void sweep_backwards(const PanelView<float>& view, const PanelRange& range, float* x);
 

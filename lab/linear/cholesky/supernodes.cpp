@@ -55,7 +55,7 @@ Supernodes find_supernodes(const Ldl& ldl, const PanelCosts& costs) {
   std::vector<std::vector<Index>> children(n);
   for (Index j = 0; j < n; ++j) {
     cost[j] = cost_of(1, rows_below(j), costs);
-    // first the children with the most rows in common
+    // first the children that have the most rows in common with column j
     std::stable_sort(children[j].begin(), children[j].end(),
                      [&](Index a, Index b) { return rows_below(a) > rows_below(b); });
     for (const Index child : children[j]) {

@@ -15,11 +15,11 @@ struct PanelCosts {
   double row = 2.0;     ///< to read a row's index and to load and store the row
 };
 
-/// Groups of columns of L with similar patterns, stored as one pattern (relaxed supernodes, Ashcraft and
-/// Grimes 1989), and the forest that they inherit from the elimination tree.
+/// Groups of columns of L with similar patterns, each stored with one pattern (relaxed supernodes, Ashcraft
+/// and Grimes 1989), and the forest that they inherit from the elimination tree.
 struct Supernodes {
   std::vector<Index> of_column;  ///< the supernode of each column of L
-  std::vector<Index> parent;     ///< greater than the supernode, or −1
+  std::vector<Index> parent;     ///< the parent's number, which is greater; −1 for a root
   std::vector<Index> top;        ///< its last column of L, which has entries in all rows below the supernode
   std::vector<double> cost;      ///< of its panels, by PanelCosts
 
@@ -30,8 +30,8 @@ struct Supernodes {
 /// column.
 constexpr Index panel_count(Index columns, Index widest) { return (columns + widest - 1) / widest; }
 
-/// Returns the supernodes: joins a column and each of its children in the elimination tree if that makes the
-/// solve cheaper. O(columns log columns).
+/// Returns the supernodes: joins a column and each of its children in the elimination tree unless that makes
+/// the solve costlier. O(columns log columns).
 Supernodes find_supernodes(const Ldl& ldl, const PanelCosts& costs = {});
 
 /// A tree of tasks over a forest of supernodes. A task can start when its children are done; its children are
@@ -46,8 +46,8 @@ struct SolveTasks {
   [[nodiscard]] Index count() const noexcept { return static_cast<Index>(parent.size()); }
 };
 
-/// Cuts the forest wherever two or more branches each cost at least `min_cost`; smaller branches are bundled.
-/// The tasks do not depend on the number of threads. O(supernodes).
+/// Returns the tasks: cuts the forest wherever two or more branches each cost at least `min_cost`; smaller
+/// branches are bundled. The tasks do not depend on the number of threads. O(supernodes).
 SolveTasks make_solve_tasks(const Supernodes& supernodes, double min_cost);
 
 }  // namespace meshorder

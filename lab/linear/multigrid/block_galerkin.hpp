@@ -26,8 +26,9 @@ CoarseMatrix galerkin_pattern(const BlockView<R>& fine, const Prolongation<R>& p
                               const ColumnBlocks& transposed);
 
 /// Computes Pᵀ A P into the pattern of `coarse`, for symmetric A, in double. If an unknown has a column of
-/// zeros in P, its diagonal entry becomes the largest diagonal entry of its block, or 1, so that the product
-/// is definite if A is. O(multiplications), on all threads, with the same bits for any number of threads.
+/// zeros in P, its diagonal entry becomes the largest diagonal entry of its block, or 1 if all are 0, so that
+/// the product is definite if A is. O(multiplications), on all threads, with the same bits for any number of
+/// threads.
 template <int R>
 void galerkin_product(const BlockView<R>& fine, const Prolongation<R>& p, const ColumnBlocks& transposed,
                       CoarseMatrix& coarse);

@@ -124,8 +124,8 @@ struct Node {
   }
 };
 
-/// Sums of products with blocks of R×C numbers, column by column. Each column has a sum of its own, so that
-/// additions need not wait for each other.
+/// Sums of products with blocks of R×C numbers, stored column by column. Each column has a sum of its own, so
+/// that additions need not wait for each other.
 template <int R, int C>
 struct ProductSum {
   Node<R> of_column[C];

@@ -35,7 +35,7 @@ namespace {
 constexpr int kBytesAhead = 2048;
 
 /// Adds the contributions of row `i` to earlier rows. Contributions from the chunks above and below go to
-/// separate memory, since they can come at the same time.
+/// separate memory, since two threads may add them at once.
 template <int R>
 HWY_INLINE void give(const SweptRows& rows, Index i, const Node<R>& x) {
   for (Offset k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {
@@ -57,8 +57,8 @@ HWY_INLINE Node<R> solve_diagonal(const SweptRows& rows, Index i, const Node<R>&
   return x;
 }
 
-/// Returns row i of L x. Prefetches blocks at a distance of `Ahead` bytes, which is negative in descending
-/// sweeps; hardware does not prefetch those.
+/// Returns row i of L x. Prefetches blocks `Ahead` bytes further on; `Ahead` is negative in descending
+/// sweeps, for which hardware does not prefetch.
 template <int R, int Ahead>
 HWY_INLINE Node<R> left_product(const SweptRows& rows, Index i) {
   auto product = ProductSum<R, R>::zero();
@@ -141,7 +141,7 @@ MESHORDER_SIMD_VERSIONS(backwards_6);
 MESHORDER_SIMD_VERSIONS(residual_3);
 MESHORDER_SIMD_VERSIONS(residual_6);
 
-/// Returns whether all neighbours of every row are in the row's own chunk or an adjacent one.
+/// Returns whether all neighbours of every row are in the row's own chunk or an adjacent chunk.
 bool touch_only_the_next(const Laplacian& graph, const RowChunks& chunks) {
   bool result = true;
   for (Index i = 0; i < graph.size(); ++i) {
@@ -152,7 +152,7 @@ bool touch_only_the_next(const Laplacian& graph, const RowChunks& chunks) {
   return result;
 }
 
-/// Returns the smallest chunks of at least `min_rows` rows that touch only adjacent chunks, or one chunk.
+/// Returns the smallest chunks of at least `min_rows` rows that touch only adjacent chunks; else one chunk.
 RowChunks sweep_chunks(const Laplacian& graph, Index min_rows) {
   for (Index rows = min_rows; rows < graph.size(); rows *= 2) {
     RowChunks chunks(graph, rows);

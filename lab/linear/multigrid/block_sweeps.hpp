@@ -17,13 +17,13 @@ inline constexpr Index kNodeStride = R == 3 ? 4 : 8;
 
 struct SweptRows;
 
-/// Gauss–Seidel by blocks on a symmetric matrix A = L + D + Lᵀ of R×R blocks. Only L, in float, and the
-/// inverses of D are kept. L serves both triangles: with the blocks of a row of L, a sweep also adds the
-/// row's part of Lᵀ x to earlier rows.
+/// Gauss–Seidel by blocks on a symmetric matrix A = L + D + Lᵀ of R×R blocks. Only L and the inverse blocks
+/// of D are kept, in float. L serves both triangles: a sweep that reads a row of L also adds the row's part
+/// of Lᵀ x to earlier rows.
 ///
 /// Rows are processed in chunks. Chunks of one colour are processed at the same time (see RowChunks); every
-/// chunk touches only adjacent chunks. L couples rows to rows that are processed earlier. Results have the
-/// same bits for any number of threads.
+/// chunk touches only adjacent chunks. L couples a row to rows that a forward sweep processes earlier.
+/// Results have the same bits for any number of threads.
 template <int R>
 class BlockSweeps {
  public:
@@ -55,7 +55,7 @@ class BlockSweeps {
                                 AlignedVector<float>& residual) const;
 
   [[nodiscard]] Index rows() const noexcept { return index_size(offsets_) - 1; }
-  /// Blocks of D⁻¹, column by column.
+  /// Returns the blocks of D⁻¹, each column by column.
   [[nodiscard]] const AlignedVector<float>& inverse_diagonal() const noexcept { return inverse_diagonal_; }
   [[nodiscard]] const RowChunks& chunks() const noexcept { return chunks_; }
   [[nodiscard]] std::size_t bytes() const;
@@ -65,10 +65,10 @@ class BlockSweeps {
   [[nodiscard]] SweptRows rows_swept(Index begin, Index end, const float* b, float* x, Given* given) const;
 
   RowChunks chunks_;
-  std::vector<Offset> offsets_{0};  ///< of L
+  std::vector<Offset> offsets_{0};  ///< of the rows of L
   std::vector<Index> columns_;
   std::vector<Index> sources_;   ///< of each block of L: the index of its transpose in the matrix
-  AlignedVector<float> values_;  ///< blocks column by column, and room for a load past the last
+  AlignedVector<float> values_;  ///< blocks column by column, and room for a load past the last block
   AlignedVector<float> inverse_diagonal_;
 };
 

@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the graph of the blocks that are not zero, with their norms as weights.
+/// Returns the graph of the blocks off the diagonal that are not 0, weighted by their norms.
 template <int R>
 Laplacian graph_of_norms(const BlockView<R>& matrix) {
   Laplacian graph;
@@ -35,10 +35,10 @@ Laplacian graph_of_norms(const BlockView<R>& matrix) {
   return graph;
 }
 
-/// Returns the aggregates of the nodes that have neighbours. They are larger if the prolongation is
+/// Returns the aggregates of the nodes that have neighbours. Aggregates are larger if the prolongation is
 /// smoothed.
 Aggregates aggregates_of(const Laplacian& graph, Coarsening coarsening) {
-  // smallest norm of a strong neighbour's block, relative to the largest of the row
+  // smallest norm of a strong neighbour's block, relative to the row's largest norm
   const double strength = coarsening == Coarsening::plain ? 0.25 : 0.04;
   const Aggregation all = aggregate(graph, RowChunks::whole(graph.size()), strength);
   const auto has_neighbours = [&](Index i) { return graph.offsets[i] < graph.offsets[i + 1]; };

@@ -12,7 +12,7 @@ namespace meshorder {
 template <int R>
 struct MultigridLevel {
   BlockSweeps<R> sweeps;
-  Prolongation<R> prolongation;  ///< from the next level; without columns on the coarsest
+  Prolongation<R> prolongation;  ///< from the next level; without columns on the coarsest level
   Prolongation<R> tentative;     ///< the prolongation before smoothing; empty if it stays plain
   double smoothing = 0;          ///< ω of the smoothed prolongation
   ColumnBlocks transposed;

@@ -33,7 +33,8 @@ CsrGraph graph_of(const BlockCsr& pattern) {
   return graph;
 }
 
-/// Returns the inverse of a symmetric matrix after making its eigenvalues positive; 0 if it is not finite.
+/// Returns the inverse of a symmetric matrix after making its eigenvalues positive; 0 if the matrix is not
+/// finite.
 Eigen::MatrixXf dense_inverse(const CoarseMatrix& matrix) {
   constexpr double kMin = 1e-12;  // smallest eigenvalue, as a share of the largest
   const Eigen::Index n = Eigen::Index{kRigidModes} * matrix.rows();
@@ -161,7 +162,7 @@ class Multigrid final : public Preconditioner {
       coarse_vectors_.emplace_back(last->rows());
       coarse_.push_back(make_level(view(*last), Coarsening::smoothed, modes));
       MultigridLevel<kRigidModes>& level = coarse_.back();
-      // coarse_ has grown, which may have moved the level with `last`
+      // coarse_ has grown: the level that `last` points into may have moved
       last = coarse_.size() > 1 ? &coarse_[coarse_.size() - 2].coarse : &finest_.coarse;
       update_level(view(*last), level);
       last->values = std::vector<double>();
@@ -196,7 +197,7 @@ class Multigrid final : public Preconditioner {
     now.sweeps.backwards(here.b, here.x, here.given);
   }
 
-  /// Applies a second cycle to the residual of the first.
+  /// Adds a second cycle, applied to the residual of the first.
   void cycle_again(std::size_t level) const {
     LevelVectors<kRigidModes>& here = coarse_vectors_[level];
     coarse_[level].sweeps.residual_after_backwards(here.before, here.x, here.residual);
@@ -225,7 +226,7 @@ class Multigrid final : public Preconditioner {
   bool is_made_ = false;
   MultigridLevel<3> finest_;
   std::vector<MultigridLevel<kRigidModes>> coarse_;  ///< the levels that are swept
-  Eigen::MatrixXf coarsest_inverse_;                 ///< empty where the last level is swept
+  Eigen::MatrixXf coarsest_inverse_;                 ///< empty if the last level is swept
   mutable LevelVectors<3> finest_vectors_;
   mutable std::vector<LevelVectors<kRigidModes>> coarse_vectors_;
 };

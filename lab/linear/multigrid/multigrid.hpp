@@ -10,15 +10,14 @@ namespace meshorder {
 /// Makes a preconditioner for elasticity: one cycle of algebraic multigrid by aggregation, with the
 /// rigid-body modes as near-null space (Vaněk, Mandel, Brezina 1996).
 ///
-/// Vertices are gathered in aggregates by the strength of their blocks; each aggregate is a node of the next
-/// level with six unknowns, its rigid motions, and so on to a level that is solved exactly or hardly
+/// Vertices are gathered in aggregates by the strength of their blocks. Each aggregate is a node of the next
+/// level, with its six rigid motions as unknowns. Levels follow until one is solved exactly or hardly
 /// coarsens. The prolongation from the first coarse level is plain, so that the first coarse operator stays
-/// sparse. The prolongations from coarser levels are smoothed, so that iterations hardly grow with the
-/// mesh. Coarse operators are Galerkin products. A cycle sweeps Gauss–Seidel over the blocks forwards,
-/// corrects from the next level (once from the first coarse level and from the last levels, twice from the
-/// others: a W-cycle) and sweeps backwards. Matrices are kept as halves in float; coarse operators are
-/// computed in double. Internally the vertices are numbered breadth first, whatever their order in the
-/// matrix.
+/// sparse. The prolongations from coarser levels are smoothed, so that iterations hardly grow with the mesh.
+/// Coarse operators are Galerkin products. A cycle makes a forward sweep of block Gauss–Seidel, corrects from
+/// the next level (once from the first coarse level and from the last levels, twice from the others: a
+/// W-cycle) and makes a backward sweep. Matrices are kept as halves in float; coarse operators are computed
+/// in double. Internally the vertices are numbered breadth first, whatever their order in the matrix.
 ///
 /// The first `update` makes the aggregates from the matrix's values; later updates only recompute values, and
 /// take a third to a half of the time. A matrix that changes slowly does not need an update each time: with

@@ -17,7 +17,8 @@ using Square = Eigen::Matrix<double, kRigidModes, kRigidModes, Eigen::RowMajor>;
 /// columns to the old ones. Columns that depend on earlier columns become 0.
 Square orthonormalise(Modes& columns) {
   constexpr int kTranslations = 3;
-  // least norm of a mode, relative to the largest rotation; below it the mode is 0 (rotation about a line)
+  // least norm of a translation relative to its norm before, of a rotation to the largest rotation's norm; a
+  // smaller mode (rotation about a line) becomes 0
   constexpr double kMin = 1e-4;
   Square upper = Square::Zero();
   const auto project_out = [&](int from, int j) {

@@ -19,7 +19,8 @@ struct Aggregates {
 };
 
 /// Returns the displacements of each point in the six infinitesimal rigid motions about the mean point: 3×6
-/// numbers a point, row by row. Columns are translations along x, y, z, then rotations about them. O(points).
+/// numbers a point, row by row. Columns are translations along x, y, z, then rotations about these axes.
+/// O(points).
 std::vector<double> rigid_modes(std::span<const Point> points);
 
 /// Result of aggregation: the prolongation and the modes of the coarse nodes.
@@ -31,10 +32,10 @@ struct RigidProlongation {
 };
 
 /// Returns the prolongation in which a fine node depends only on its own aggregate. The columns of an
-/// aggregate are the modes restricted to it and orthonormalised (Vaněk, Mandel, Brezina 1996). A mode that
-/// depends on earlier modes of the aggregate (rotations of a single vertex, the rotation of a line about
-/// itself) gets a column of zeros. `modes` holds R×6 numbers for each of `fine_count` nodes; nodes in no
-/// aggregate get empty rows. O(fine nodes).
+/// aggregate are the modes, restricted to the aggregate and orthonormalised (Vaněk, Mandel, Brezina 1996). A
+/// mode that depends on earlier modes of the aggregate (rotations of a single vertex, the rotation of a line
+/// about itself) gets a column of zeros. `modes` holds R×6 numbers for each of `fine_count` nodes; nodes in
+/// no aggregate get empty rows. O(fine nodes).
 template <int R>
 RigidProlongation<R> rigid_prolongation(const Aggregates& aggregates, Index fine_count,
                                         std::span<const double> modes);

@@ -18,7 +18,7 @@ HWY_INLINE void restrict_columns(const Prolongation<R>& p, const ColumnBlocks& t
                                  const float* residual, Index begin, Index end, float* result) {
   for (Index a = begin; a < end; ++a) {
     auto sum = ProductSum<kRigidModes, R>::zero();
-    // the members of an aggregate are not adjacent in memory
+    // the blocks of an aggregate's members are not adjacent in memory
     if (a + 1 < end) {
       for (Offset k = transposed.offsets[a + 1]; k < transposed.offsets[a + 2]; ++k) {
         __builtin_prefetch(p.block(transposed.blocks[k]));

@@ -26,7 +26,7 @@ void subtract_product(double* a, const double* b, const Value* block) {
   }
 }
 
-/// Returns whether each diagonal entry of a pivot exceeds a thousandth of the original one.
+/// Returns whether each diagonal entry of a pivot exceeds a thousandth of the original entry.
 bool is_large_enough(const double* pivot, const double* diagonal) {
   constexpr double kMin = 1e-3;
   for (int c = 0; c < 3; ++c) {

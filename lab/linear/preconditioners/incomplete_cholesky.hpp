@@ -43,7 +43,7 @@ class IncompleteCholesky final : public Preconditioner {
   std::vector<Index> vertices_;     ///< the vertex of each row
   std::vector<Index> rows_;         ///< the row of each vertex
   std::vector<Offset> offsets_;     ///< of each row's blocks left of the diagonal
-  std::vector<Index> columns_;      ///< their vertices, in the order of elimination
+  std::vector<Index> columns_;      ///< the vertices of these blocks' columns, in the order of elimination
   std::vector<Offset> sources_;     ///< for each of these blocks, its index in the matrix
   std::vector<Offset> diagonals_;   ///< for each row, the index of its diagonal block in the matrix
   AlignedVector<float> values_;     ///< L's blocks, and one more number, since vector loads read past the end

@@ -24,7 +24,8 @@ class Preconditioner : public Polymorphic {
   /// the matrix has changed. Throws InvalidArgument for another size (see also make_preconditioner).
   void update(const BlockCsr& matrix);
 
-  /// Computes z ≈ A⁻¹ r, 3 doubles for each vertex. Throws InvalidArgument if a size differs.
+  /// Computes z ≈ A⁻¹ r, 3 doubles for each vertex. Throws InvalidArgument if a size differs, and in
+  /// multigrid before the first update.
   void apply(std::span<const double> r, std::span<double> z) const;
 
   /// Returns the memory held, in bytes.

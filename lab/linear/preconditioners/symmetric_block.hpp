@@ -27,7 +27,8 @@ double inverse_or_one(double entry);
 /// result is always finite and positive definite.
 SymmetricBlock definite_inverse(const SymmetricBlock& block);
 
-/// Returns the index of a vertex's block on the diagonal. Throws InvalidArgument if the pattern lacks it.
+/// Returns the index of a vertex's block on the diagonal. Throws InvalidArgument if the pattern lacks the
+/// block.
 Offset diagonal_block(const BlockCsr& matrix, Index vertex);
 
 /// Computes q = block · p.

@@ -16,11 +16,11 @@ struct BlockFactor {
   const double* inverses;  ///< of D's blocks, 6 for each vertex: 00 01 02 11 12 22
 };
 
-/// Solves rows begin … end − 1 of L z = r for z at their vertices. O(blocks).
+/// Solves rows begin … end − 1 of L z = r for z at the rows' vertices. O(blocks).
 void solve_lower(const BlockFactor& factor, const double* r, double* z, Index begin, Index end);
 
-/// Solves rows end − 1 … begin of Lᵀ z = y. On entry z must be y minus the contributions of later rows of L;
-/// the function subtracts those of its own rows. O(blocks).
+/// Solves rows end − 1 … begin of Lᵀ z = y. On entry z must be y minus the contributions of the rows of L
+/// from `end` on; the function subtracts those of rows begin … end − 1. O(blocks).
 void solve_upper(const BlockFactor& factor, double* z, Index begin, Index end);
 
 /// Computes z = D⁻¹ z at the vertices of the rows begin … end − 1.

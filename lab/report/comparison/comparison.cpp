@@ -18,12 +18,12 @@
 namespace meshorder {
 namespace {
 
-/// Checks one by one that descriptions in two studies agree.
+/// Checks that two studies agree, description by description.
 class Comparison {
  public:
   Comparison(const ComparedStudy& a, const ComparedStudy& b) : a_(a), b_(b) {}
 
-  /// Throws unless both are the same.
+  /// Throws unless `a` equals `b`.
   void expect_same(std::string_view what, const std::string& a, const std::string& b) const {
     if (a != b) refuse(fmt::format("{} {}, where {} has {}", what, b, a_.file, a));
   }

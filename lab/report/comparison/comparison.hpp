@@ -15,16 +15,16 @@ namespace meshorder {
 
 /// A study that is compared with another study.
 struct ComparedStudy {
-  std::string file;  ///< its results.json, for errors and tables
+  std::string file;  ///< path of its results.json, for errors and tables
   StudyResults results;
 };
 
-/// Throws InputError, which names the difference, unless both studies ran scenarios, and the same scenarios
+/// Throws InputError, which names the difference, unless both studies ran the same scenarios, at least one,
 /// on the same meshes with the same parameters and the same reference. They may differ in machine, program,
 /// threads, steps, runs and further orders.
 void check_comparable(const ComparedStudy& a, const ComparedStudy& b);
 
-/// How much more of the reference's time an order saves in a study B than in a study A, in percentage points.
+/// The percentage of time that an order saves in a study B minus that percentage in a study A.
 struct SavingDifference {
   double points = 0;          ///< B's per cent minus A's
   double low = 0, high = 0;   ///< 95 % confidence interval of `points`

@@ -9,7 +9,7 @@
 namespace meshorder {
 
 struct Figure {
-  std::string name;     ///< of the file without extension, "spans-dragon"
+  std::string name;     ///< file name without extension, "spans-dragon"
   std::string section;  ///< its section of the page: "speedup", "spans", "caches", "phases" or "prediction"
   std::string title;
   std::string caption;  ///< also the picture's alternative text

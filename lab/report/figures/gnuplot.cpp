@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kProgram = "gnuplot";
 
-/// Returns text without control characters, which neither gnuplot's strings nor XML can hold.
+/// Returns text with blanks in place of control characters, which neither gnuplot's strings nor XML can hold.
 std::string printable(std::string_view text) {
   std::string result(text);
   for (char& c : result) {

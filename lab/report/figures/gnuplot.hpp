@@ -41,7 +41,7 @@ struct OrderStyle {
 };
 
 /// Returns the style of an order. The paper's orders have the same style in all studies; other orders get the
-/// remaining styles by turns, in the study's sequence.
+/// remaining styles in rotation, in the study's sequence.
 OrderStyle style_of(const StudyResults& results, std::string_view ordering);
 
 /// Returns a block of inline data, "$NAME << EOD …".

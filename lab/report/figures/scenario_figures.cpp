@@ -63,7 +63,7 @@ struct Bars {
   double height = 0;
 };
 
-/// Adds bars in per cent of the reference's seconds, or of the first order's if the reference has not run.
+/// Adds bars in per cent of the reference's seconds, or of the first order's seconds without a reference.
 void add_scenario(Bars& bars, const StudyResults& results, const ScenarioRecord& scenario) {
   const ScenarioOrderRecord* whole = find_order(scenario, results.reference);
   bool headed = false;

@@ -19,7 +19,7 @@
 namespace meshorder {
 namespace {
 
-/// The range of the values added, with the names of the ends.
+/// The least and the greatest of the values added, with their names.
 struct Range {
   double least = std::numeric_limits<double>::max();
   double most = std::numeric_limits<double>::lowest();
@@ -156,7 +156,7 @@ std::string same_motion(const StudyResults& results) {
       same, same.empty() ? "" : " ", in_words(parted));
 }
 
-/// Returns a sentence on the orders whose iterations differ from the reference's by 1 % or more: their
+/// Returns a sentence on the orders whose iteration counts differ from the reference's by 1 % or more: their
 /// difference in time is not due to memory alone.
 std::string other_work(const StudyResults& results) {
   std::vector<std::string> where;

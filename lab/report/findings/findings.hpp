@@ -18,8 +18,8 @@ std::vector<std::string> findings_of(const StudyResults& results);
 /// processor and, in a study with scenarios, how far the predicted speedups of the kernels are off.
 std::vector<std::string> mesh_findings(const StudyResults& results);
 
-/// How far the predicted speedups of a kernel over the study's reference are from the measured ones, over all
-/// meshes and orders that have both. An error is |predicted / measured − 1|.
+/// Errors of the predicted speedups of a kernel over the study's reference, for all meshes and orders with
+/// predicted and measured times. An error is |predicted / measured − 1|.
 struct PredictionError {
   int speedups = 0;           ///< number of errors; 0: the other numbers mean nothing
   double median = 0;          ///< the middle error, or the mean of the two middle errors

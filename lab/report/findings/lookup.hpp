@@ -31,9 +31,9 @@ inline std::string title_of(const StudyResults& results, std::string_view orderi
   return std::string(ordering);
 }
 
-/// Seconds of a scenario's steps by part, mean of the runs. All methods have the same parts: making the mesh
-/// and ordering it (fluids), work by element (assembly; ADMM's local step), the system of equations (the
-/// solve; the global step), collisions, and the rest.
+/// Seconds of each part of a scenario's steps: means over the runs. All methods have the same parts: making
+/// the mesh and ordering it (fluids), work by element (assembly; ADMM's local step), the system of equations
+/// (the solve; the global step), collisions, and the rest.
 struct Phases {
   double mesh = 0;
   double order = 0;
@@ -60,7 +60,7 @@ inline Phases phases_of(const ScenarioOrderRecord& order) {
   return sum;
 }
 
-/// Returns the iterations of conjugate gradients plus those of ADMM, mean of the runs.
+/// Returns the mean, over the runs, of the iterations of conjugate gradients plus ADMM.
 inline double mean_iterations(const ScenarioOrderRecord& order) {
   double sum = 0;
   for (const RunRecord& run : order.runs) sum += static_cast<double>(run.cg_iterations + run.admm_iterations);

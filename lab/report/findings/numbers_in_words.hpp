@@ -15,7 +15,7 @@ std::string with_digits(double number, int digits);
 /// Returns a number with as many decimals as `with_digits(whole, digits)` has: "0.50" for a part of "12.35".
 std::string with_digits_of(double number, double whole, int digits);
 
-/// Returns one decimal and a sign: "+24.9", "−0.3", "0.0".
+/// Returns a number with a sign and one decimal: "+24.9", "−0.3"; "0.0" has no sign.
 std::string signed_percent(double percent);
 
 /// Returns "9,870", "12.3 k", "1.23 M": three digits from 10,000 on.

@@ -27,7 +27,7 @@ struct PaperScenario {
   std::array<PaperSaving, 3> savings;
 };
 
-/// Time steps of each of the paper's runs.
+/// Number of time steps in each of the paper's runs.
 inline constexpr Index kPaperSteps = 240;
 
 std::span<const PaperScenario> paper_scenarios();
@@ -38,10 +38,10 @@ const PaperScenario* find_paper_scenario(std::string_view name);
 /// Returns what an order saves in a scenario, if the paper gives it.
 std::optional<PaperSaving> paper_saving(std::string_view scenario, std::string_view ordering);
 
-/// Returns the *derived* seconds of the scenario's steps in an order. For the scrambled order this is the sum
-/// of the seconds saved divided by the sum of the percentages. This quotient is accurate to half a per cent,
-/// since the percentages are rounded. For another order, the seconds that it saves are subtracted. Empty if
-/// the paper gives no number.
+/// Returns the *derived* seconds of the scenario's steps in an order. For the scrambled order, these are the
+/// sum of the seconds saved divided by the sum of the shares saved. This quotient is accurate to half a per
+/// cent, since the percentages are rounded. For another order, the seconds that it saves are subtracted.
+/// Empty if the paper gives no number.
 std::optional<double> paper_seconds(std::string_view scenario, std::string_view ordering);
 
 }  // namespace meshorder

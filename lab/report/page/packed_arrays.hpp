@@ -31,7 +31,7 @@ class PackedArrays {
   /// Adds points, quantised to 65,536 steps along each side of their bounding box.
   nlohmann::ordered_json add_places(std::span<const Point> places);
 
-  /// Adds positions of the same vertices in each frame, as differences from the frame before. Positions are
+  /// Adds the positions of vertices in each frame, as differences from the frame before. Positions are
   /// quantised to 1/4096 of the first frame's longest side, or coarser if the frames would not fit in 65,536
   /// steps. Throws InvalidArgument if frames differ in size.
   nlohmann::ordered_json add_frames(const std::vector<std::vector<Point>>& frames);

@@ -29,7 +29,7 @@ struct PageMesh {
   std::vector<Point> points;  ///< of the surface's vertices
   struct Order {
     std::string ordering;
-    std::vector<Index> ranks;  ///< of the surface's vertices, from 0
+    std::vector<Index> ranks;  ///< positions of the surface's vertices in the order, from 0
     SparsityPattern sparsity;
   };
   std::vector<Order> orders;
@@ -39,7 +39,7 @@ struct PageMesh {
 struct PageMotion {
   std::string scenario;
   SurfaceView surface;
-  std::vector<Index> steps;                ///< of each frame
+  std::vector<Index> steps;                ///< step of each frame
   std::vector<std::vector<Point>> frames;  ///< positions of the surface's vertices
   SurfaceView obstacle;                    ///< may be empty
   std::vector<Point> obstacle_points;
@@ -69,7 +69,7 @@ void write_page(const Page& page, const FilePath& path);
 
 /// Returns HTML on how much faster kernels run on each mesh in the order that `meshorder order` makes: the
 /// gain, if it is certain; the verdict; and two bars for each kernel, its times in the mesh's own order and
-/// in the new one. Empty for a study with scenarios. Leaves out meshes that have neither a verdict nor times.
+/// the new order. Empty for a study with scenarios. Leaves out meshes that have neither a verdict nor times.
 std::string headlines_of(const StudyResults& results);
 
 /// The files of viewer/, and three.js with its licence, built into the program.

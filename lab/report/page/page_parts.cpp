@@ -51,7 +51,7 @@ std::vector<unsigned> simplified(const std::vector<unsigned>& corners, const std
   return result;
 }
 
-/// Puts neighbours next to each other, for a graphics card's cache and for the compression of the numbers.
+/// Puts neighbours together, for a graphics card's cache and for the compression of the numbers.
 void order_for_drawing(std::vector<unsigned>& corners, std::vector<Index>& vertices) {
   meshopt_optimizeVertexCache(corners.data(), corners.data(), corners.size(), vertices.size());
   std::vector<unsigned> places(vertices.size());
@@ -96,7 +96,7 @@ SurfaceView surface_view(const Mesh& mesh, Index most_triangles) {
   const std::vector<std::array<Index, 3>> triangles = boundary_triangles(mesh);
   SurfaceView view;
   std::vector<unsigned> corners;
-  std::vector<Index> numbers(mesh.points.size(), -1);  // of the mesh's vertices in the view
+  std::vector<Index> numbers(mesh.points.size(), -1);  // each mesh vertex's number in the view
   for (const auto& triangle : triangles) {
     for (const Index v : triangle) {
       if (numbers[v] < 0) {

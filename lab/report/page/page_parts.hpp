@@ -14,15 +14,15 @@ namespace meshorder {
 
 /// Returns the mesh's `boundary_triangles`, simplified to about `most_triangles` if there are more (Garland
 /// and Heckbert 1997, Surface simplification using quadric error metrics; by meshoptimizer). All vertices are
-/// vertices of the mesh. Keeps the topology unless that would leave more than twice as many triangles. The
-/// result is the same on every run. Throws Error for a mesh without volume cells and surface. O(n log n).
+/// vertices of the mesh. Keeps the topology unless more than 2 · `most_triangles` would remain. The result is
+/// the same on every run. Throws Error for a mesh without volume cells and surface. O(n log n).
 SurfaceView surface_view(const Mesh& mesh, Index most_triangles);
 
 /// How much of meshes and motions a page shows.
 struct PageDetail {
   Index mesh_triangles = 90'000;  ///< approximate number for a mesh coloured by order
   Index motion_triangles = 12'000;
-  Index frames = 60;  ///< at most, of a motion
+  Index frames = 60;  ///< most frames of a motion
   int sparsity_side = 192;
 };
 

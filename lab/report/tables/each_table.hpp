@@ -15,7 +15,7 @@ Table summary_table(const StudyResults& results);
 /// Returns "+11.9 (+10.2 … +13.5), saves" as a cell.
 TableCell saving_cell(const Speedup& speedup);
 
-/// Returns what the paper's order saves in a scenario, "+27.8"; a dash if the paper does not give it.
+/// Returns the per cent that an order saves in a scenario of the paper, "+27.8"; a dash if not given.
 TableCell paper_cell(std::string_view scenario, std::string_view ordering);
 
 // The paper's tables with its numbers next to ours, a row for each mesh or scenario and order. A table
@@ -24,7 +24,7 @@ TableCell paper_cell(std::string_view scenario, std::string_view ordering);
 
 /// Returns whether the paper has numbers for a scenario of the study, with the same reference.
 bool has_paper(const StudyResults& results);
-/// Returns how these runs differ from the paper's, for captions: " Not as in the paper: falling, 20 steps."
+/// Returns how the study's runs differ from the paper's: " Not as in the paper: falling, 20 steps."
 std::string differences_from_paper(const StudyResults& results);
 /// Explanation, for captions, of a dash in the paper's column.
 inline constexpr const char* kNotTold =
@@ -40,7 +40,7 @@ Table break_even_table(const StudyResults& results);  ///< what the orders cost,
 
 Table phases_table(const StudyResults& results);
 Table motions_table(const StudyResults& results);
-/// Returns a table for each cache hierarchy, in the sequence of their first mesh.
+/// Returns a table for each cache hierarchy, in the sequence of their first occurrence.
 std::vector<Table> misses_tables(const StudyResults& results);
 /// Returns how far the predicted speedups of the kernels are from the measured ones.
 Table prediction_table(const StudyResults& results);

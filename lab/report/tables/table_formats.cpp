@@ -23,7 +23,7 @@ std::string csv_escaped(std::string_view text) {
   return result + '"';
 }
 
-/// Returns whether all cells of the column are numbers, except weak cells.
+/// Returns whether the table has rows and each cell of the column is a number or weak.
 bool has_numbers(const Table& table, std::size_t column) {
   return !table.rows.empty() && std::all_of(table.rows.begin(), table.rows.end(), [column](const auto& row) {
     return row[column].value || row[column].weak;

@@ -18,7 +18,7 @@ enum class Certainty {
   costs    ///< the interval lies below 0
 };
 
-/// A cell of a table: its text, and its value, by which a column is sorted.
+/// A cell of a table: its text, and the value by which a column is sorted.
 struct TableCell {
   std::string text;
   std::optional<double> value;
@@ -39,7 +39,7 @@ struct Table {
 /// Returns the paper's tables, with its numbers next to ours, and further tables. Their ids:
 /// - summary: what the orders save, a row for each scenario and a column for each order
 /// - table-1: edge spans, by mesh and order
-/// - table-2: seconds, by scenario and order like the tables down to `motions`
+/// - table-2: seconds, by scenario and order, as in the tables down to `motions`
 /// - table-3: seconds saved over the reference
 /// - table-4: speedups in per cent with their intervals
 /// - break-even: what an order costs and the step at which it pays off
@@ -49,7 +49,7 @@ struct Table {
 /// - prediction-error: how far predicted speedups of the kernels are from measured ones, by kernel
 /// - kernels: predicted and measured speedups of the kernels, by mesh, kernel and order
 /// - machine, protocol: the machine, and how the study measured
-/// Tables for which the results hold no data are omitted. A cell's value is a number of the results or
+/// Tables for which the results hold no data are omitted. A cell's value is a number of the results or is
 /// derived from them; its text is rounded.
 std::vector<Table> tables_of(const StudyResults& results);
 

@@ -31,7 +31,7 @@ class Session {
   Session& operator=(const Session&) = delete;
   Session& operator=(Session&&) = delete;
 
-  /// Ends all processes. For a process that cannot go on while others may wait for it.
+  /// Ends all processes; for use when this process cannot go on and others may wait for it.
   [[noreturn]] static void abort(int status) noexcept;
 };
 
@@ -55,7 +55,7 @@ struct Parcels {
   }
 };
 
-/// Returns the values sorted into parcels, one for each rank. The values of a rank keep their sequence.
+/// Returns the values sorted into parcels, one for each rank. The values for one rank keep their sequence.
 /// O(values + ranks) time, plus the calls of the two functions.
 ///
 /// @param rank_of   returns the rank of value k; called twice for each value
@@ -78,7 +78,7 @@ template <class RankOf, class ValueOf>
 /// `handle`, `rank`, `size`, `is_root`, `set_chunk_limit` and `chunk_limit`. Sums do not depend on timing.
 class Communicator {
  public:
-  /// Makes a group of the ranks of an MPI communicator, which is duplicated; by default, of all ranks.
+  /// Duplicates an MPI communicator; by default, that of all ranks.
   explicit Communicator(MPI_Comm ranks = MPI_COMM_WORLD);
   ~Communicator();
   Communicator(const Communicator&) = delete;
@@ -119,7 +119,7 @@ class Communicator {
     return exchange(std::span<const T>(sent.values), sent.starts);
   }
 
-  /// Returns the values of all ranks, in rank order, at the root; nothing elsewhere. Throws as `exchange`.
+  /// At the root, returns the values of all ranks, in rank order; elsewhere, nothing. Throws as `exchange`.
   template <class T>
   [[nodiscard]] std::vector<T> gathered_at_root(const std::vector<T>& own) const {
     std::vector<Offset> starts(static_cast<std::size_t>(size_) + 1, static_cast<Offset>(own.size()));
@@ -131,7 +131,7 @@ class Communicator {
   /// as `exchange`.
   ///
   /// @param at_root  values of the root; ignored on other ranks
-  /// @param starts   ranks + 1 entries, ascending; only the size is used on other ranks
+  /// @param starts   ranks + 1 entries, ascending; other ranks use only its size
   template <class T>
   [[nodiscard]] std::vector<T> scattered_from_root(const std::vector<T>& at_root,
                                                    const std::vector<Offset>& starts) const {

@@ -8,7 +8,7 @@ namespace meshorder::distributed {
 
 namespace {
 
-/// Returns the position of each owner's first number in an ascending list, then the size of the list.
+/// Returns where each owner's numbers begin in an ascending list, then the size of the list.
 std::vector<Offset> starts_by_owner(const Layout& layout, const std::vector<GlobalIndex>& numbers) {
   std::vector<Offset> starts(1, 0);
   for (int rank = 0; rank < layout.ranks(); ++rank) {

@@ -17,7 +17,7 @@ namespace meshorder::distributed {
 /// arrays of values.
 class Halo {
  public:
-  /// Every rank has to call it. O(numbers + ranks).
+  /// Every rank has to call it. O((numbers + ranks) · log numbers) at most.
   ///
   /// @param layout   the owners of the numbers
   /// @param numbers  numbers whose values this rank needs, in any order; its own numbers and repeats are
@@ -29,7 +29,7 @@ class Halo {
   [[nodiscard]] const std::vector<GlobalIndex>& numbers() const noexcept { return wanted_.numbers(); }
   /// Returns the numbers that the ranks need from this rank, rank by rank; numbers may occur several times.
   [[nodiscard]] const std::vector<GlobalIndex>& asked_of_this_rank() const noexcept { return asked_.values; }
-  /// Returns the position of a number in `numbers()`. O(1) or O(log numbers), as `NumberSet`.
+  /// Returns the position of a number in `numbers()`. O(1) or O(log numbers), as `NumberSet::position`.
   [[nodiscard]] std::size_t position(GlobalIndex number) const { return wanted_.position(number); }
 
   /// Returns the owners' values, one for each of `numbers()`. Every rank has to call it.
@@ -79,7 +79,7 @@ class HaloValues {
   /// Returns the value of the k-th number that this rank owns.
   [[nodiscard]] const T& own(Offset k) const { return own_[static_cast<std::size_t>(k)]; }
   [[nodiscard]] const std::vector<T>& own() const noexcept { return own_; }
-  /// Returns the value of an own number in O(1), of a number in the halo as `Halo::position`.
+  /// Returns a number's value. O(1) if this rank owns the number, else as `Halo::position`.
   [[nodiscard]] const T& operator[](GlobalIndex number) const {
     const GlobalIndex k = number - first_;
     if (k >= 0 && k < std::ssize(own_)) return own(k);

@@ -32,7 +32,7 @@ class Layout {
     return Layout(std::move(starts));
   }
 
-  /// Gives rank r the next sizes[r] numbers. O(ranks).
+  /// Divides the numbers from 0 on: rank r gets sizes[r] of them. O(ranks).
   static Layout of_sizes(const std::vector<GlobalIndex>& sizes) {
     std::vector<GlobalIndex> starts(sizes.size() + 1, 0);
     std::partial_sum(sizes.begin(), sizes.end(), starts.begin() + 1);

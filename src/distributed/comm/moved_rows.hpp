@@ -15,7 +15,7 @@ namespace meshorder::distributed {
 /// can then move many arrays.
 class RowMover {
  public:
-  /// Every rank has to call it. O(rows + ranks).
+  /// Every rank has to call it. O(rows · log ranks + ranks).
   ///
   /// @param layout  the owners of the places
   /// @param places  new place of each row of this rank; over all ranks, each place of the layout occurs once

@@ -19,7 +19,7 @@ class NumberSet {
 
   /// Returns the numbers, ascending.
   [[nodiscard]] const std::vector<GlobalIndex>& numbers() const noexcept { return numbers_; }
-  /// Returns the position of a number of the set in `numbers()`. O(1), or O(log numbers) if the numbers are
+  /// Returns the position in `numbers()` of a number of the set. O(1), or O(log numbers) if the numbers are
   /// far apart.
   [[nodiscard]] std::size_t position(GlobalIndex number) const;
 

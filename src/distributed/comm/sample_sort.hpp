@@ -10,7 +10,7 @@
 
 namespace meshorder::distributed {
 
-/// An entry to sort: by key, ties by number. No two numbers are equal.
+/// An entry to be sorted by key, ties by number. No two numbers are equal.
 struct SortEntry {
   std::uint64_t key;
   GlobalIndex number;

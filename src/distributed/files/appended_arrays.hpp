@@ -67,7 +67,7 @@ class AppendedArrays {
   /// of the array, in bytes. O(blocks) time.
   ///
   /// @param bounds  receives the first byte of each compressed block, then the end of the last
-  /// @throws Error for a damaged or truncated array, and for words that exceed the memory limit
+  /// @throws Error for a damaged or truncated array, and if the memory limit is exceeded
   Offset place(const vtk::VtuElement& element, FilePart& part, std::vector<Offset>& bounds);
 
  private:

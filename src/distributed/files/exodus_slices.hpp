@@ -30,7 +30,7 @@ class ExodusSlices {
   [[nodiscard]] static std::optional<ExodusSlices> open(const Communicator& communicator,
                                                         const std::string& path);
 
-  /// Returns 0 and the end of each block of elements.
+  /// Returns 0, then the end of each block of elements.
   [[nodiscard]] const std::vector<GlobalIndex>& block_ends() const noexcept { return block_ends_; }
   /// Returns whether Nemesis pieces can keep these blocks: there are not too many, and the file itself is no
   /// piece.

@@ -14,7 +14,7 @@
 
 namespace meshorder::distributed {
 
-/// What all ranks know of a .vtu, .vtkhdf or .xdmf file.
+/// Facts about a .vtu, .vtkhdf or .xdmf file that all ranks have.
 struct FileFacts : FileSizes {
   /// A .vtkhdf file is an HDF5 file; an .xdmf file names an HDF5 file. In HDF5 files, no words precede an
   /// array.
@@ -32,11 +32,11 @@ struct FileHead {
   std::string path;  ///< path of the file that has the parts: for an .xdmf file, its HDF5 file
   FileFacts facts;
   std::vector<FilePart> parts;     ///< sorted by their first bytes
-  std::vector<std::string> names;  ///< names of the parts in messages, by part number
+  std::vector<std::string> names;  ///< names of the parts, for messages; by part number
   std::vector<std::vector<Offset>>
-      blocks;  ///< first byte of each block, then the end of the last, by part number
+      blocks;  ///< by part number: first byte of each block, then the end of the last
   VtuXml xml;
-  std::string mold;                        ///< of a .vtkhdf file: result of `mold_of` for its arrays
+  std::string mold;                        ///< for .vtkhdf: result of `mold_of` for the file's arrays
   std::shared_ptr<const SplitFile> files;  ///< writer of an .xdmf file and its HDF5 file; else null
 };
 

@@ -16,7 +16,7 @@
 
 namespace meshorder::distributed {
 
-/// The names of a part and of its file in messages.
+/// The names, for messages, of a part and of its file.
 struct PartName {
   const std::string& file;
   const std::string& part;

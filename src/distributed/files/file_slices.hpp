@@ -22,7 +22,7 @@ namespace meshorder::distributed {
 [[nodiscard]] std::optional<FileHead> shared_head(const Communicator& communicator, const std::string& path);
 
 /// A file that all ranks read at once, array after array; each rank reads its range of the rows. Every rank
-/// has to call each function that reads; it throws SharedError if a rank cannot read.
+/// has to call each function that reads; such a function throws SharedError if a rank cannot read.
 ///
 /// Formats: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html, and
 /// "VTKHDF File Format".

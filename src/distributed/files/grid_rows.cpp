@@ -21,7 +21,7 @@ class WholeGrid {
  public:
   WholeGrid(const Mesh& mesh, Notes& notes)
       : context_(mesh, notes, vtk::NamePlace::xml), cells_(context_.cells()) {
-    // the order in which the file from `xml` has the arrays
+    // in the order of the file that `xml` returns
     for (const Association association : {Association::vertices, Association::cells}) {
       for (const DataArray* const array : context_.arrays) {
         if (array->association == association) arrays_.push_back(array);

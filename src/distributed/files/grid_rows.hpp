@@ -44,9 +44,8 @@ struct GridRows {
 /// all ranks. Every rank has to call it. O(size of the part).
 ///
 /// @param communicator  must outlive the result
-/// @param moved  must outlive the result, and have only cells that VTK can hold; its cells are moved out of
-/// it
-/// @param notes  as for `scattered_grid`
+/// @param moved         must outlive the result, and have only cells that VTK can hold; loses its cells
+/// @param notes         as for `scattered_grid`
 [[nodiscard]] GridRows moved_grid(const Communicator& communicator, MovedPart& moved, Notes& notes);
 
 }  // namespace meshorder::distributed

@@ -33,7 +33,7 @@ class MeshParts {
   /// Returns the vertices of a part: first those that belong to the part, then those of other parts. Both
   /// lists ascend, so that the second is grouped by part.
   [[nodiscard]] std::span<const Index> vertices(Index part) const { return vertices_[part]; }
-  /// Returns all parts, of any rank, with a vertex; ascending.
+  /// Returns all parts, of any rank, that have a vertex; ascending.
   [[nodiscard]] std::span<const Index> parts_with(Index vertex) const { return parts_of_vertices_[vertex]; }
   /// Returns the part of a cell.
   [[nodiscard]] Index part_with(Index cell) const { return part_of_cells_[static_cast<std::size_t>(cell)]; }
@@ -69,7 +69,7 @@ class PartCutter {
   const Mesh& mesh_;
   const MeshParts& parts_;
   std::vector<Incidence> rows_;       ///< rows of each part, by array; empty for dense arrays
-  std::vector<Incidence> members_;    ///< positions of each part's members in the set's list, by set
+  std::vector<Incidence> members_;    ///< by set: positions, in the set's list, of each part's members
   std::vector<Index> vertex_places_;  ///< positions in the part being cut; stale for vertices not in it
   std::vector<Index> cell_places_;
 };

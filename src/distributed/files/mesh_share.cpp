@@ -25,7 +25,7 @@ namespace {
 constexpr std::size_t kPlaceInList = 6;
 constexpr std::size_t kId = 8;
 
-/// Returns the numbers of a type that `bytes` holds.
+/// Returns the numbers in `bytes`; `type` is their type.
 Values values_of(const std::vector<std::byte>& bytes, std::size_t type) {
   return numbers_of_type(type, [&]<class Number>(std::vector<Number>& numbers) {
     numbers.resize(bytes.size() / sizeof(Number));

@@ -146,8 +146,8 @@ MovedFile::MovedFile(const Communicator& communicator, const FileHead& head, con
       new_cells_(places_by_dimension(communicator, slice_, order.cells)),
       cell_mover_(communicator, slice_.cells, new_cells_) {}
 
-/// Returns the cells in this rank's range of new places, with the new numbers of their vertices. Reads them
-/// at the first call.
+/// Returns the cells in this rank's range of new places, with the new numbers of their vertices. Reads the
+/// cells at the first call.
 Rows& MovedFile::cells() {
   if (cells_) return *cells_;
   file_.read_cells(slice_);

@@ -27,8 +27,8 @@ struct SliceFile {
   std::string name_of_data;
 };
 
-/// The mesh of a file in its new order. Every rank has to call all functions; they throw SharedError if a
-/// rank cannot read or write. Each array is read when its rows are needed; the cells are read only once.
+/// A file's mesh, in its new order. Every rank has to call all functions; they throw SharedError if a rank
+/// cannot read or write. Each array is read when its rows are needed; the cells are read only once.
 ///
 /// The new file is the old one with the rows of its arrays in their new order. Everything else is copied byte
 /// by byte, except the offsets of arrays that follow a compressed array. A new .xdmf file and its HDF5 file
@@ -52,8 +52,8 @@ class MovedFile {
   /// Returns the points and cells in this rank's range of new places. O(size of the slice).
   [[nodiscard]] MeshSlice slice();
 
-  /// Returns the mesh, valid as long as this object. Moves the cells out of this object, so call it last.
-  /// O(size of the slice).
+  /// Returns the mesh, which is valid as long as this object. Moves the cells out of this object, so call it
+  /// last. O(size of the slice).
   [[nodiscard]] GridRows grid();
 
  private:

@@ -29,8 +29,8 @@ struct ArrayForm {
   Index components = 0;
 };
 
-/// Returns the common type of an array that has types a and b on two ranks. They may differ: a reader returns
-/// 32-bit integers if all labels or numbers that it reads fit.
+/// Returns the common type of an array that has types a and b on two ranks. The types may differ: a reader
+/// returns 32-bit integers if all labels or numbers that it reads fit.
 std::size_t common_type(std::size_t a, std::size_t b) {
   if (a == b) return a;
   const bool are_integers = (a == kNarrow || a == kWide) && (b == kNarrow || b == kWide);

@@ -61,7 +61,8 @@ class MovedPart {
                                              Offset width) const;
   /// As above, for the k-th array of the mesh; NaN or 0 for a vertex or cell without a row.
   [[nodiscard]] std::vector<std::byte> moved_array(std::size_t k) const;
-  /// Returns the ids of this rank's places in a number type; there must be ids. Every rank has to call it.
+  /// Returns the ids at this rank's places, converted to a number type; there must be ids. Every rank has to
+  /// call it.
   [[nodiscard]] std::vector<std::byte> moved_ids(Association association, std::size_t type) const;
 
   /// Moves the cells out of the part; `part` and `slice` then lack them.

@@ -287,7 +287,7 @@ class NemesisPieces {
                           [&](const SetRecord& record) { return record.in_mesh == set.name; });
     });
     if (piece.cell_count() == 0) {
-      // drop the block labels of a part without cells: they would become a variable
+      // drop the block labels of a part without cells: they would become an element variable
       std::erase_if(piece.data, [](const DataArray& array) {
         return array.association == Association::cells && array.name == kLabel;
       });

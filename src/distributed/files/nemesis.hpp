@@ -35,7 +35,7 @@ GlobalIndex write_nemesis_pieces(const Mesh& mesh, const std::vector<GlobalIndex
                                  const std::vector<std::string>& paths, const std::vector<std::string>& names,
                                  Notes& notes);
 
-/// As above, for a mesh from an Exodus II file of which each rank has a part; each rank writes the pieces of
+/// As above, for a mesh from an Exodus II file. Each rank has a part of the mesh, and writes the pieces of
 /// its own parts. Every rank has to call it. O(size of the part + size of the share · log).
 ///
 /// @param moved       the mesh in its new order by blocks

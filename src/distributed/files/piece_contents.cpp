@@ -55,7 +55,7 @@ struct CellOfPiece {
   Offset row;
 };
 
-/// Sorts cells by their parts, those of `part` first; stable.
+/// Sorts cells by part, but puts those of `part` first; stable.
 void sort_own_first(std::vector<CellOfPiece>& cells, Index part) {
   std::stable_sort(cells.begin(), cells.end(), [&](const CellOfPiece& a, const CellOfPiece& b) {
     if ((a.part == part) != (b.part == part)) return a.part == part;

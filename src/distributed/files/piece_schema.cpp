@@ -26,7 +26,7 @@ constexpr std::string_view kGhostType = "vtkGhostType";
 constexpr std::string_view kPart = "part";
 constexpr std::string_view kGlobalIds = "GlobalIds";  // VTK's name of the role
 
-/// Tags of the sections, in the order of a piece.
+/// Tags of a piece's sections, in their order.
 constexpr std::array<std::string_view, 4> kSections{"PointData", "CellData", "Points", "Cells"};
 
 /// Returns the index of an array's section in `kSections`.
@@ -62,7 +62,7 @@ PieceArray added(Association association, Source source, std::string_view type, 
           {}};
 }
 
-/// Returns the array of the pieces for the k-th array of the mesh's file, an element of the given section.
+/// Returns the pieces' array for the k-th array of the mesh's file, which is `element` in this section.
 PieceArray taken(const vtk::VtuDocument& file, const vtk::VtuElement& element, std::size_t section,
                  std::size_t k) {
   constexpr std::array<std::string_view, 5> kOfValues{"format", "offset", "RangeMin", "RangeMax",

@@ -73,15 +73,15 @@ class PieceSchema {
  private:
   void add_roles(const vtk::VtuElement& section, Association association);
   [[nodiscard]] std::string opening(const char* type) const;
-  /// Returns the lines of a section, given by its number, with this indent; `element(tag, array, k)` returns
-  /// the element of the k-th array.
+  /// Returns the lines of the section of this number, with this indent; `element(tag, array, k)` returns the
+  /// element of the k-th array.
   template <class Element>
   [[nodiscard]] std::string section_text(std::size_t section, std::string_view indent,
                                          std::string_view prefix, const Element& element) const;
 
   std::string version_;
   std::string fields_;
-  std::array<std::string, 4> attributes_;  ///< attributes of the elements of the sections
+  std::array<std::string, 4> attributes_;  ///< attributes of each section's element
   std::vector<PieceArray> arrays_;
   std::vector<std::string> replaced_;
   std::vector<vtk::ArrayRole> roles_;

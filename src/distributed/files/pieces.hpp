@@ -15,7 +15,7 @@ namespace meshorder::distributed {
 struct PiecesReport {
   GlobalIndex ghost_vertices = 0;  ///< summed over all pieces, like `ghost_cells`
   GlobalIndex ghost_cells = 0;
-  Notes notes;  ///< at the root: arrays that have another name in the pieces
+  Notes notes;  ///< at the root: notes on arrays whose names differ in the pieces
 };
 
 /// Returns the common properties of the pieces of a mesh. Every rank has to call it.

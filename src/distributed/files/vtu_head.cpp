@@ -104,7 +104,7 @@ class HeadReader {
     });
   }
 
-  /// Adds the array of an element to the parts; returns false if it cannot be read by slices.
+  /// Adds the array of an element to the parts; returns false if the array cannot be read by slices.
   bool read_array(const vtk::VtuDocument& file, std::string_view section, const vtk::VtuElement& element,
                   AppendedArrays& arrays) {
     const std::string_view name = element.text_of("Name");

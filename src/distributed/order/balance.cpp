@@ -11,7 +11,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Weight to be sent to the owner of a vertex.
+/// A contribution to a vertex's weight, for the vertex's owner.
 struct Share {
   GlobalIndex vertex;
   GlobalIndex weight;

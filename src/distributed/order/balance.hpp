@@ -47,7 +47,7 @@ inline constexpr GlobalIndex kElementWeight = 840;
 [[nodiscard]] std::vector<GlobalIndex> shares_in_elements(const Communicator& communicator,
                                                           const Layout& layout, const Rows& elements);
 
-/// Returns the weight of the heaviest part relative to the mean; 1 without weights. Every rank has to call
+/// Returns (weight of the heaviest part) / (mean weight of a part); 1 if all are 0. Every rank has to call
 /// it. O(vertices + parts).
 ///
 /// @param part_of  part of each vertex of this rank

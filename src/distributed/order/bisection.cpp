@@ -9,8 +9,8 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Returns the graph without the edges between pieces. A piece has the vertices of parts that are not yet
-/// separated; the number of the first of these parts is the piece's number.
+/// Returns the graph without the edges between pieces. A piece is a set of consecutive parts that are not yet
+/// separated; its number is that of its first part.
 GlobalGraph within_pieces(const GlobalGraph& graph, const HaloValues<Index>& piece_of) {
   GlobalGraph within{graph.layout, {}};
   for (Offset row = 0; row < graph.rows.size(); ++row) {

@@ -16,7 +16,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Returns the cells as rows to be sent: the cell's number, followed by its vertices.
+/// Returns the cells as rows to be sent: each cell's number, followed by its vertices.
 Rows with_numbers(const Rows& cell_vertices, GlobalIndex first) {
   Rows rows;
   rows.entries.reserve(cell_vertices.entries.size() + cell_vertices.offsets.size());
@@ -29,7 +29,7 @@ Rows with_numbers(const Rows& cell_vertices, GlobalIndex first) {
   return rows;
 }
 
-/// Returns the vertices of cells in rows of `with_numbers`.
+/// Returns the vertices of the cells in rows made by `with_numbers`.
 NumberSet vertices_in(const Rows& rows) {
   std::vector<GlobalIndex> vertices;
   vertices.reserve(rows.entries.size());
@@ -38,8 +38,8 @@ NumberSet vertices_in(const Rows& rows) {
   return NumberSet(vertices);
 }
 
-/// Returns the cells' numbers from rows of `with_numbers`, sorted by `lexmax`. The numbers must ascend.
-/// Renumbers the vertices of these rows 0, 1, … in the same sequence.
+/// Returns the numbers of the cells, sorted by `lexmax`. `rows` come from `with_numbers`; cell numbers
+/// ascend. For the sort, the vertices are renumbered 0, 1, … in the same sequence.
 std::vector<GlobalIndex> sorted_by_lexmax(Rows rows) {
   Incidence cells;
   std::vector<GlobalIndex> numbers;

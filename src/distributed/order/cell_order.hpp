@@ -10,14 +10,14 @@
 
 namespace meshorder::distributed {
 
-/// Orders cells lexicographically by the new numbers of their vertices, sorted from the largest down; ties by
-/// the cells' numbers. This is the serial order `lexmax` of all cells. Every rank has to call it.
-/// O(entries + m log m) for m cells of a rank.
+/// Orders cells lexicographically by the new numbers of their vertices, the largest first; ties by the cells'
+/// numbers. This is the serial order `lexmax` of all cells. Every rank has to call it. O(entries + m log m)
+/// for m cells of a rank.
 ///
 /// @param cells          the owners of the cells
 /// @param cell_vertices  new numbers of each cell's vertices, at least one; freed before the exchange
 /// @param vertices       layout of the new numbers: the owner of a cell's largest number sorts the cell
-/// @return this rank's range of the cells' numbers in their new order; ranges follow in rank order
+/// @return the old numbers of the cells in this rank's range of the new order; ranges are in rank order
 /// @throws as `Communicator::exchange`; SharedError if a rank gets more than 2,147,483,647 cells or vertices
 [[nodiscard]] std::vector<GlobalIndex> cells_by_lexmax(const Communicator& communicator, const Layout& cells,
                                                        Rows cell_vertices, const Layout& vertices);
@@ -27,9 +27,9 @@ namespace meshorder::distributed {
 /// @throws TooLarge for more than 2,147,483,647 cells or vertices
 [[nodiscard]] std::vector<GlobalIndex> own_cells_by_lexmax(const Rows& cell_vertices);
 
-/// Returns the new place of each cell of a slice. The cells of each dimension fill the places of this
-/// dimension in the file in the sequence of `in_order`: this rank's range of all cells in their new order.
-/// Every rank has to call it. O(cells).
+/// Returns the new place of each cell of a slice. Each cell gets the place of a cell of its dimension. Cells
+/// of one dimension follow `in_order`, this rank's range of all cells in their new order. Every rank has to
+/// call it. O(cells).
 ///
 /// @throws as `Communicator::exchange`
 [[nodiscard]] std::vector<GlobalIndex> places_by_dimension(const Communicator& communicator,
@@ -41,7 +41,7 @@ namespace meshorder::distributed {
 /// O(blocks · ranks) at the root.
 ///
 /// @param cells       the owners of the cells
-/// @param block_ends  0 and the end of each block, the same on all ranks
+/// @param block_ends  0, then the end of each block; the same on all ranks
 /// @throws as `Communicator::exchange`
 [[nodiscard]] std::vector<GlobalIndex> places_by_block(const Communicator& communicator, const Layout& cells,
                                                        const std::vector<GlobalIndex>& block_ends,

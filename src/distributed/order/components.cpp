@@ -30,7 +30,7 @@ CsrGraph own_graph(const GlobalGraph& graph, int rank) {
   return own;
 }
 
-/// Two pieces of different ranks that an edge joins.
+/// Two pieces, on different ranks, joined by an edge.
 struct Link {
   GlobalIndex smaller;
   GlobalIndex larger;
@@ -85,7 +85,7 @@ struct Found {
 Found joined_pieces(const std::vector<GlobalIndex>& sizes, const std::vector<Link>& links,
                     const Layout& pieces, GlobalIndex alone) {
   const std::vector<GlobalIndex> first_piece = smallest_pieces(sizes.size(), links);
-  std::vector<GlobalIndex> size_of(sizes.size(), 0);  // size of a component, by its first piece
+  std::vector<GlobalIndex> size_of(sizes.size(), 0);  // size of each component, at its first piece
   std::vector<char> is_shared(sizes.size(), 0);
   for (std::size_t piece = 0; piece < sizes.size(); ++piece) {
     const auto first = static_cast<std::size_t>(first_piece[piece]);

@@ -20,9 +20,9 @@ struct Component {
 
 constexpr int kAllRanks = -1;
 
-/// The components of a graph that have vertices on this rank, and those that all ranks solve.
+/// The components with vertices on this rank, and the components that all ranks solve.
 struct Components {
-  ComponentNumbering pieces;            ///< components of the subgraph of this rank's vertices, called pieces
+  ComponentNumbering pieces;            ///< pieces: components of the subgraph of this rank's vertices
   std::vector<Component> of_piece;      ///< the component of each piece
   std::vector<Component> of_all_ranks;  ///< components that all ranks solve; the same on all ranks
 };

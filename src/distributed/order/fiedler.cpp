@@ -26,7 +26,7 @@ namespace {
 // Entries of the row that sends a vertex to the solver of its component; the vertex's neighbours follow.
 enum VertexEntry : std::size_t { kNumber, kInFile, kPlace, kStart, kFirstNeighbour };
 
-/// New numbers that this rank has found, for vertices of any rank, and reports on their components.
+/// New numbers, found by this rank, of vertices of any rank; and reports on these vertices' components.
 struct Places {
   struct Report {
     GlobalIndex place;
@@ -201,7 +201,7 @@ std::vector<double> solve(const Communicator& communicator, SharedLevel finest, 
   return values;
 }
 
-/// Makes the entry that decides the sign of a vector (see Sign) negative or 0.
+/// Gives a vector the sign for which the deciding entry (see Sign) is negative or 0.
 void give_sign(const Communicator& communicator, const std::vector<GlobalIndex>& in_file,
                std::vector<double>& values) {
   double largest = 0;

@@ -13,11 +13,11 @@ namespace meshorder::distributed {
 
 /// Problem sizes up to which one rank works alone.
 struct SharedSizes {
-  GlobalIndex alone = 50'000;  ///< largest component on several ranks that a single rank still solves
-  GlobalIndex few = 50'000;    ///< maximum number of coarse vertices at the root; n / ranks if that is larger
+  GlobalIndex alone = 50'000;  ///< maximum size of a component on several ranks that one rank solves
+  GlobalIndex few = 50'000;    ///< maximum number of coarse vertices at the root; vertices / ranks if larger
 };
 
-/// The order by the Fiedler vector of a distributed graph.
+/// The order of a distributed graph by its Fiedler vector.
 struct SharedFiedlerOrder {
   std::vector<GlobalIndex> new_numbers;      ///< new number of the vertex of each row of the graph
   std::vector<FiedlerComponent> components;  ///< reports on all components, largest first; at the root only
@@ -32,9 +32,9 @@ struct SharedFiedlerOrder {
 /// threads.
 ///
 /// @param halo            halo of the graph's ghosts: neighbours that other ranks own
-/// @param number_in_file  number in the file of each vertex of this rank. Fixes the sign as in the serial
-///                        order: among the entries with at least half of the largest magnitude, the first in
-///                        the file is negative
+/// @param number_in_file  number in the file of each vertex of this rank. These numbers fix the sign as in
+///                        the serial order: among the entries with at least half of the largest magnitude,
+///                        the first in the file is negative
 /// @param options         tolerance, max_iterations and seed
 /// @throws SharedError unless the tolerance is positive and finite and max_iterations ≥ 1; as
 ///         `Communicator::exchange`

@@ -18,7 +18,7 @@ struct PartOrders {
   std::vector<GlobalIndex> new_numbers;  ///< new number of the vertex of each row of the graph
   std::vector<GlobalIndex> starts;       ///< first new number of each part, then the end of the last part
   std::vector<GlobalIndex> interfaces;   ///< by part: number of vertices with neighbours in other parts
-  GlobalIndex ghosts = 0;                ///< number of outside neighbours, summed over the parts
+  GlobalIndex ghosts = 0;                ///< number of neighbours outside each part, summed over the parts
 };
 
 /// Orders each part by a method, on the rank of that part. In `spectral`, edges to earlier parts pull

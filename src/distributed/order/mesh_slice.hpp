@@ -19,14 +19,14 @@ struct MeshSlice {
   std::vector<Shape> shapes;  ///< shapes of this rank's cells
 };
 
-/// Distributes the points and cells of a mesh at the root. Every rank has to call it. O(size of the mesh) at
-/// the root.
+/// Distributes the points and cells of the root's mesh. Every rank has to call it. O(size of the mesh) at the
+/// root.
 ///
 /// @param mesh  the mesh at the root; ignored on other ranks
 /// @throws as `Communicator::exchange`
 [[nodiscard]] MeshSlice scattered(const Communicator& communicator, const Mesh& mesh);
 
-/// Returns for each cell whether its dimension is the highest on any rank. Every rank has to call it.
+/// Returns for each cell whether its dimension is the highest of all ranks' cells. Every rank has to call it.
 [[nodiscard]] std::vector<char> are_elements(const Communicator& communicator,
                                              const std::vector<Shape>& shapes);
 

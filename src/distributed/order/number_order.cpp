@@ -15,7 +15,7 @@ constexpr std::uint64_t kSign = std::uint64_t{1} << 63U;
 std::uint64_t key_of(std::int64_t number) { return static_cast<std::uint64_t>(number) ^ kSign; }
 std::int64_t number_of(std::uint64_t key) { return static_cast<std::int64_t>(key ^ kSign); }
 
-/// What all ranks must know of one rank's sorted numbers to find the smallest duplicate.
+/// Facts about one rank's sorted numbers, from which all ranks find the smallest duplicate.
 struct Ends {
   bool is_empty = true;
   std::uint64_t first = 0;

@@ -12,7 +12,7 @@ namespace meshorder::distributed {
 
 /// Vertices or cells sorted by the numbers (ids) that their file gives them.
 struct NumberOrder {
-  std::vector<GlobalIndex> sorted;    ///< this rank's range of the positions in the file, sorted by number
+  std::vector<GlobalIndex> sorted;    ///< positions in the file, sorted by number: this rank's range
   std::optional<std::int64_t> twice;  ///< the smallest number that occurs twice
 };
 

@@ -65,8 +65,8 @@ void renumber(Rows& rows, const Halo& halo, const std::vector<GlobalIndex>& valu
   for (GlobalIndex& vertex : rows.entries) vertex = values[halo.position(vertex)];
 }
 
-/// Returns 1 for each vertex of this rank that elements use, else 0. `halo`, the elements' halo, requests
-/// exactly the used vertices.
+/// Returns 1 for each vertex of this rank that elements use, else 0. `halo` is the elements' halo: it
+/// requests exactly the used vertices.
 std::vector<char> used_vertices(const Communicator& communicator, const Layout& vertices, const Halo& halo) {
   return communicator.together([&] {
     std::vector<char> used(static_cast<std::size_t>(vertices.size(communicator.rank())), 0);

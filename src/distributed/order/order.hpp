@@ -32,7 +32,7 @@ struct DistributedOptions {
 /// number of parts.
 void check_options(const DistributedOptions& options);
 
-/// Properties of an order, and how long it took.
+/// Properties of an order, and the time of each stage.
 struct DistributedReport {
   Index parts = 0;
   Partitioner partitioner = Partitioner::ptscotch;  ///< the partitioner that made the parts
@@ -57,7 +57,7 @@ struct DistributedOrder {
   DistributedReport report;
 };
 
-/// Orders a mesh. Parts that edges join get nearby ranges of numbers. The method orders the vertices of a
+/// Orders a mesh. Parts joined by edges get nearby ranges of numbers. The method orders the vertices of a
 /// part; vertices that no element uses come last, in their old order. Cells are in the order `lexmax`. With
 /// `Partitioner::order` the method orders all vertices, and parts are equal ranges of that order. Every rank
 /// has to call it.

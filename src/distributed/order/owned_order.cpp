@@ -29,7 +29,8 @@ Rows renumbered(const Communicator& communicator, const Layout& vertices, const 
   });
 }
 
-/// Returns whether any rank has coordinates. Throws SharedError if another rank with vertices lacks them.
+/// Returns whether any rank has coordinates. Throws SharedError if so and a rank has more or fewer points
+/// than vertices.
 bool has_points(const Communicator& communicator, const OwnedMesh& mesh) {
   const auto own_count = static_cast<std::size_t>(mesh.vertices.size(communicator.rank()));
   const std::vector<char> given = communicator.gathered(static_cast<char>(mesh.points.empty() ? 0 : 1));

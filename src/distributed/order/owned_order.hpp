@@ -38,7 +38,7 @@ struct OwnedOrder {
 struct OwnedParts {
   std::vector<GlobalIndex> new_numbers;  ///< new number of each vertex of this rank
   std::vector<GlobalIndex> starts;       ///< first new number of each part, then the end of the last part
-  std::vector<GlobalIndex> cells;        ///< part of each element: that of its vertex with the largest number
+  std::vector<GlobalIndex> cells;  ///< part of each element: the part of its last vertex in the new order
 };
 
 /// Orders the vertices as `order_slices` does, and finds the part of each element. Every rank has to call it.

@@ -68,7 +68,7 @@ struct Partition {
 /// two of its strategies, and keeps the parts with fewer edges between them. If PT-Scotch fails or the
 /// graph is too small for it, `hilbert` is used instead. Every rank has to call it.
 ///
-/// @param graph    numbered along a Hilbert curve from 0 on, equal shares on all ranks
+/// @param graph    numbered along a Hilbert curve from 0 on, with equal shares on all ranks
 /// @param parts    ≥ 1
 /// @param by       `ptscotch` or `hilbert`
 /// @param weights  weight > 0 of each vertex of this rank; empty: all 1
@@ -87,8 +87,8 @@ enum class ScotchStrategy : std::uint8_t { speed, quality };
 /// @param strategy  `quality` takes up to twice as long as `speed`
 /// @param part_of   receives the part of each vertex of this rank
 /// @return whether PT-Scotch succeeded; the same on all ranks
-/// @throws SharedError if a rank lacks memory, and if this program was linked with a PT-Scotch whose numbers
-///         do not have 64 bits
+/// @throws SharedError if a rank lacks memory, and if this program runs with a PT-Scotch whose numbers do
+///         not have 64 bits
 [[nodiscard]] bool cut_by_ptscotch(const Communicator& communicator, const GlobalGraph& graph, Index parts,
                                    const std::vector<GlobalIndex>& weights, ScotchStrategy strategy,
                                    std::vector<Index>& part_of);

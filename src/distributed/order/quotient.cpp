@@ -40,7 +40,7 @@ std::vector<Border> merged(std::vector<Border> borders) {
 
 /// Returns the borders on this rank. An edge is counted once, by the rank of its vertex in the lower part.
 std::vector<Border> borders_of(const GlobalGraph& graph, const HaloValues<Index>& part_of) {
-  constexpr std::size_t kEnough = 1 << 20;  // borders are merged when there are this many
+  constexpr std::size_t kEnough = 1 << 20;  // minimum number of borders at which they are merged
   std::vector<Border> borders;
   std::size_t limit = kEnough;
   for (Offset row = 0; row < graph.rows.size(); ++row) {

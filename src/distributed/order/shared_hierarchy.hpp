@@ -28,11 +28,12 @@ struct SharedLevel {
 };
 
 /// A `Hierarchy` of one connected, distributed graph. Each rank aggregates its own rows until few coarse
-/// vertices are left on all ranks together. The root then gets these and builds the coarser levels alone.
-/// Every rank has to call all functions.
+/// vertices are left on all ranks together. The root then gets these vertices and builds the coarser levels
+/// alone. Every rank has to call all functions.
 ///
 /// The cycle is the serial one, except that Gauss–Seidel uses the values that other ranks had before the
-/// sweep. This still lowers the energy of the error, since 2 D − L is positive semi-definite for any graph.
+/// sweep. Such a sweep still lowers the energy of the error, since 2 D − L is positive semi-definite for any
+/// graph.
 class SharedHierarchy {
  public:
   /// @param few  coarse vertices go to the root when all ranks together have at most this many, or when a

@@ -75,9 +75,10 @@ std::string_view trimmed_of_ends(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
-/// Returns whether the line after a keyword line that ends with a comma has further parameters, as in Abaqus.
-/// Such a line begins with a parameter that has a value, or with a parameter without value that changes the
-/// data lines. All other lines are data (numbers, names of sets): CalculiX does not continue keyword lines.
+/// Returns whether `line`, which follows a keyword line with a comma at its end, has further parameters. Such
+/// a line begins with a parameter that has a value, or with a parameter without value that changes the data
+/// lines. All other lines are data (numbers, names of sets): CalculiX, unlike Abaqus, does not continue
+/// keyword lines.
 bool continues_keyword(std::string_view line) {
   constexpr std::array<std::string_view, 6> kWithoutValue{"GENERATE", "INTERNAL", "REMOVE",
                                                           "RIKS",     "TABULAR",  "UNSORTED"};

@@ -64,7 +64,7 @@ struct Reference {
 /// Returns whether the lines or numbers of a card are in another file.
 bool has_other_file(const Card& card);
 
-/// Returns the places where a card names nodes and elements by number; nullopt if the card is not known.
+/// Returns the places where a card names nodes and elements by number; nullopt if they are not known.
 /// `lines`: the lines of the card, from the keyword on.
 std::optional<std::vector<Reference>> references(const Card& card, std::string_view lines);
 

@@ -66,7 +66,7 @@ template <class T>
   return true;
 }
 
-/// Takes the next field if it is a plain number that a node or element can have, 1 to kMaxIndex.
+/// Takes the next field if it is a plain number; returns true only for a number from 1 to kMaxIndex.
 [[gnu::always_inline]] inline bool take_plain_number(std::string_view& line, Index& number) {
   std::int64_t value = 0;
   if (!take_plain(line, value) || value < 1 || value > kMaxIndex) return false;
@@ -199,8 +199,8 @@ class DeckReader {
     lines_.include(std::string(name), line_);
   }
 
-  /// Gives the next line of the present card but does not take it; follows *INCLUDE. Returns false at the
-  /// next keyword other than *INCLUDE.
+  /// Gives the next line of the present card but does not take it; follows *INCLUDE. Returns false at the end
+  /// of the card.
   bool peek_in_card(std::string_view& line) {
     while (lines_.peek(line)) {
       if (!is_keyword(line)) return true;
@@ -218,8 +218,8 @@ class DeckReader {
     return without_parameter(text, "INPUT");
   }
 
-  /// Gives the next data line of nodes or elements but does not take it; returns false at the next keyword.
-  /// Appends comments to `comments`; drops blank lines.
+  /// Gives the next data line of nodes or elements but does not take it; returns false at the end of the
+  /// card. Appends comments to `comments`; drops blank lines.
   bool peek_data(std::string_view& line, std::string& comments) {
     while (peek_in_card(line)) {
       if (line.empty()) {

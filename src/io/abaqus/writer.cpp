@@ -363,7 +363,7 @@ class DeckWriter {
   void add_sets_of_labels(std::vector<EntitySet>& sets) {
     const Labels labels = labels_of(mesh_, Association::cells);
     if (!labels.any()) return;
-    const bool are_markers = mesh_.format == "su2";  // then label 0 is not a marker
+    const bool are_markers = mesh_.format == "su2";  // label 0 is not a marker of SU2
     std::map<std::int64_t, EntitySet> by_label;
     for (Index c = 0; c < mesh_.cell_count(); ++c) {
       if (labels.given[c] && (labels.values[c] != 0 || !are_markers))

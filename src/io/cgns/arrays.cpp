@@ -54,7 +54,8 @@ class ArrayMaker {
     return true;
   }
 
-  /// Makes one array of a group. If pieces do not fit, splits it by solution (level 0), then node (level 1).
+  /// Makes one array of a group if its pieces fit together, else splits the group: by solution at level 0, by
+  /// node at level 1.
   void make_of(const Group& group, int level) {
     const Piece& first = *group.front();
     if (group.size() == 1 || fit_together(group)) {

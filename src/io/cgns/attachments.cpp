@@ -67,7 +67,7 @@ class AttachmentReader {
 
   // ---- positions of numbers
 
-  /// Returns the cell with an element number in a zone, −1 if there is none.
+  /// Returns the cell of a zone with this element number, −1 if there is none.
   [[nodiscard]] Index cell_of(const ZonePlaces& of_zone, std::int64_t number) const {
     const auto begin = metadata_.sections.begin() + of_zone.first_section;
     const auto after =
@@ -221,7 +221,7 @@ class AttachmentReader {
     }
   }
 
-  /// Reads the values of `count` vertices or cells, which `rows` gives by association, section and list.
+  /// Reads the values of the `count` vertices or cells that `rows` names by association, section and list.
   void read_values(Node& node, const std::string& solution, const Field& rows, std::size_t count,
                    const std::string& path) {
     Values values = numbers_of(node);
@@ -246,7 +246,7 @@ class AttachmentReader {
     reading_.pieces.push_back({solution, name, std::move(values), reading_.bind(node, std::move(field))});
   }
 
-  /// Reads user data of unknown meaning. Their values are reordered only if they give a GridLocation_t.
+  /// Reads user data of unknown meaning. Only data with a GridLocation_t are reordered.
   void read_user_data(Node& node, const std::string& path) {
     if (node.child_of_label("GridLocation_t") != nullptr) return read_container(node, path);
     const int list = read_own_list(node, Association::vertices, path);
@@ -359,7 +359,7 @@ class AttachmentReader {
     }
   }
 
-  /// Returns what to add to the parents of polygons to get element numbers: 0 if the parents are such
+  /// Returns what to add to the parents of polygons to get element numbers: 0 if the parents are element
   /// numbers; the number of the first polyhedron − 1 if the parents count the polyhedra from 1.
   [[nodiscard]] std::int64_t shift_of_parents(std::span<const std::int64_t> numbers,
                                               const std::string& path) {

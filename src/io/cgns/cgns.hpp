@@ -8,14 +8,13 @@
 //
 // Element sections become blocks of cells, zone by zone, in the order of their element numbers. A boundary
 // condition or a ZoneSubRegion_t becomes a set of the same name, "ZONE.NAME" if several have that name. An
-// array of a solution keeps its name, or becomes "SOLUTION.NAME" if two solutions have values for the same
-// vertices or cells, "NAME step K" if the file assigns the solution to one of several times. Arrays at cell
-// centres belong to the cells of the base's dimension. All other nodes are kept as they are.
+// array of a solution keeps its name, or becomes "SOLUTION.NAME" if the values of that name do not fit into
+// one array, "NAME step K" if the file assigns the solution to one of several times. Arrays at cell centres
+// belong to the cells of the base's dimension. All other nodes are kept as they are.
 //
 // Polyhedra become tetrahedra, pyramids, wedges or hexahedra if their faces form such a cell, else cells of
-// the shape polyhedron. A polygon becomes a cell if it is a face of fewer than two polyhedra, or if a
-// condition or a solution lists it. The other polygons lie between two cells and follow the order of these
-// cells.
+// the shape polyhedron. A polygon becomes a cell if it is a face of fewer than two polyhedra, or if a node
+// lists it by number. The other polygons lie between two cells and follow the order of these cells.
 
 #include "io/cgns/tree.hpp"
 #include "io/format.hpp"
@@ -110,7 +109,7 @@ struct PointList {
   std::string set = {};             ///< name of the mesh's set with the same members; empty if there is none
   bool is_range = false;            ///< the file gave only the first and the last number
   std::string number_type = "I4";
-  bool is_shortened = false;  ///< members were left out or replaced
+  bool is_shortened = false;  ///< whether members were left out or replaced
   bool orders_data = false;   ///< other nodes may have values for the members, in the same order
 };
 
@@ -143,7 +142,7 @@ struct Field {
   int axis = 0;            ///< axis of a coordinate, from 0
   std::string type = {};   ///< type of values and coordinates in the file
   std::string array = {};  ///< name of the mesh's array
-  bool has_left = false;   ///< for values: the array no longer fits its fields
+  bool has_left = false;   ///< for values: whether the array no longer fits its fields
   Index component = 0;     ///< component of the array
   Association association = Association::vertices;
   int section = -1;  ///< section whose cells have the values, in order; −1: see `list`
@@ -154,7 +153,7 @@ struct Field {
 struct CgnsMetadata final : FormatMetadata {
   std::shared_ptr<const Tree> tree;
   int cell_dimension = 3;
-  bool has_labels = false;  ///< sections hold the labels of their cells
+  bool has_labels = false;  ///< whether sections hold the labels of their cells
   std::vector<Zone> zones;
   std::vector<Section> sections;
   std::vector<PointList> lists;
@@ -192,14 +191,14 @@ inline constexpr std::string_view kZone = "zone";
 /// of a section with this name.
 std::string name_of_label(const ElementType& type, std::int64_t label);
 /// Name of the node that holds values of a section's cells. Used for cells of lower dimensions: solutions
-/// only hold values of cells of the base's dimension.
+/// hold only values of cells of the base's dimension.
 inline constexpr std::string_view kSectionValues = "CellValues";
 
 /// Returns the members in their order, each once.
 std::vector<Index> unique_members(const std::vector<Index>& members);
 
-/// Makes the nodes of a file for a mesh of another format: one zone with a section for each type and label.
-/// Sets and arrays are left to `add_missing` (numbering.hpp).
+/// Makes the nodes of a file for a mesh of another format: one zone, whose sections are runs of cells of one
+/// type and one label or the same sets. Sets and arrays are left to `add_missing` (numbering.hpp).
 std::shared_ptr<CgnsMetadata> layout_of(const Mesh& mesh);
 
 Mesh read(const FilePath& path, Notes& notes);

@@ -42,7 +42,8 @@ class Hdf5Check {
     throw InputError(name_, what, remedy);
   }
 
-  /// Returns an attribute's text; fails if it is missing or exceeds the `most` bytes that libcgns holds.
+  /// Returns an attribute's text; fails unless it is one text of at most `most` bytes, for which libcgns has
+  /// room.
   [[nodiscard]] std::string text_of(hid_t group, const std::string& path, const char* name,
                                     std::size_t most) const {
     const std::string what = fmt::format("{}: the attribute '{}'", path.empty() ? "/" : path, name);
@@ -104,7 +105,7 @@ class Hdf5Check {
     } else if (kind == H5I_DATASET && hdf5::has_values_elsewhere(object.id())) {
       fail(path + " has its values in other files", "copy them into one file (h5repack)");
     } else if (kind == H5I_DATASET && level > 0) {
-      // links of libcgns name their targets in datasets of characters
+      // libcgns stores the targets of a link as datasets of characters
       const hdf5::DatasetInfo data = file_.info(path);
       if (data.shape.size() > 12) fail(path + " has more than 12 dimensions");
       if (name == kDataSet && size_of_type(type) != kSizes.at(data.alternative)) {

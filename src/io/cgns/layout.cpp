@@ -61,12 +61,12 @@ class NodeNames {
 
 // ---- a file for a mesh of another format
 
-/// Returns, for each section, the smallest set of cells that contains it; null if there is none.
+/// Returns, for each section, the smallest set of cells that contains the section; null if there is none.
 std::vector<const EntitySet*> sets_around(const Mesh& mesh, const CgnsMetadata& metadata) {
   std::vector<const EntitySet*> smallest(metadata.sections.size());
   for (const EntitySet& set : mesh.sets) {
     if (set.association == Association::vertices) continue;
-    std::map<Index, Index> counts;  // members in each section
+    std::map<Index, Index> counts;  // number of members in each section
     for (const Index c : set.members) ++counts[metadata.section_of_cell[c]];
     for (const auto& [s, count] : counts) {
       const bool is_smaller = smallest[s] == nullptr || set.members.size() < smallest[s]->members.size();
@@ -97,7 +97,7 @@ class MetadataMaker {
 
  private:
   static Node version() {
-    constexpr float kVersion = 3.3F;  // later versions store these nodes alike
+    constexpr float kVersion = 3.3F;  // later versions store these nodes in the same way
     Node node{.name = "CGNSLibraryVersion", .label = "CGNSLibraryVersion_t", .type = "R4", .dimensions = {1}};
     node.bytes.resize(sizeof(kVersion));
     std::memcpy(node.bytes.data(), &kVersion, sizeof(kVersion));
@@ -242,7 +242,7 @@ class Addition {
   }
 
  private:
-  /// Returns the names of the children of `parent`: a zone, or a node in a zone or in a section.
+  /// Returns the names of the children of `parent`, which is a zone or a node in a zone or in a section.
   NodeNames& names_below(const Node& parent, int zone, int section = -1) {
     const std::string path = &parent == zones_[zone] ? fmt::format("{}", zone)
                                                      : fmt::format("{}/{}/{}", zone, section, parent.name);
@@ -383,7 +383,7 @@ class Addition {
     }
   }
 
-  /// Returns the family name for a boundary part called `name`, and adds the family unless it exists.
+  /// Returns the name of the family for a condition or region `name`; adds the family unless it exists.
   /// Programs identify the parts of a boundary by families. The family's name gets a suffix if a zone has the
   /// same name.
   std::string family_for(const std::string& name) {

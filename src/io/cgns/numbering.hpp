@@ -12,9 +12,9 @@ namespace meshorder::cgns {
 /// The vertices, polygons and cells of a file in the present order of the mesh, and their numbers.
 ///
 /// Polygons that are cells have the order of their cells. The others lie between two cells: if the polyhedra
-/// kept their order, these polygons keep their order, else they are sorted by the lower, then the higher
-/// cell. Each position in a section keeps its kind of polygon: a cell, or a polygon between two cells.
-/// Polygons are left out if they are not cells and have no cell on either side.
+/// kept their order, these polygons keep their order, else they are sorted by the lower, then by the higher
+/// of the two cells. Each position in a section keeps its kind of polygon: a cell, or a polygon between two
+/// cells. Polygons are left out if they are not cells and have no cell on either side.
 ///
 /// The sections keep their element numbers if all keep their sizes, else each zone is numbered from 1 on.
 class Numbering {
@@ -43,7 +43,7 @@ class Numbering {
   [[nodiscard]] std::int64_t centred_count(int zone) const { return centred_counts_[zone]; }
   /// Returns whether all sections have as many elements as in the file that was read.
   [[nodiscard]] bool is_whole() const noexcept { return is_whole_; }
-  /// Returns the vertices or cells that have values in a node, in the order of the values.
+  /// Returns the vertices or cells that have the values of a field, in the order of the values.
   [[nodiscard]] std::vector<Index> rows_of(const Field& field) const;
 
  private:
@@ -66,8 +66,8 @@ class Numbering {
   bool is_whole_ = true;
 };
 
-/// Adds nodes to `metadata` for arrays without fields and sets without lists there. Notes the arrays and sets
-/// that CGNS cannot hold.
+/// Adds nodes to `metadata` for the arrays that have no field in it and the sets that have no list in it.
+/// Notes the arrays and sets that CGNS cannot hold.
 void add_missing(const Mesh& mesh, CgnsMetadata& metadata, const Numbering& numbering, Notes& notes);
 
 /// Fills in the values of a node that has a field, in the present order of the mesh.

@@ -197,7 +197,7 @@ class PolyhedraReader {
     return number;
   }
 
-  /// Throws if a zone of volumes has only polygons, and some section of them has ParentElements.
+  /// Throws if a zone of volumes has only sections of polygons, and one of them has ParentElements.
   void require_cells() const {
     if (reading_.metadata->cell_dimension < 3) return;
     for (const FoundSection& found : sections_) {
@@ -210,7 +210,7 @@ class PolyhedraReader {
     }
   }
 
-  /// Returns the number of polyhedra at each polygon of the zone; fails if one has three.
+  /// Returns the number of polyhedra at each polygon of the zone; fails if a polygon has three.
   [[nodiscard]] std::vector<std::uint8_t> uses_of_polygons() const {
     std::vector<std::uint8_t> uses(polyhedra_.polygon_count() - first_polygon_);
     for (Index p = first_polyhedron_; p < polyhedra_.polyhedron_count(); ++p) {
@@ -249,8 +249,8 @@ void append_polygons(Reading& reading, const FoundSection& found) {
   }
 }
 
-/// Turns cells from `first` on inside out: those with negative volumes if signs of faces contradict each
-/// other, else all cells if `sign` < 0. Notes what it turns.
+/// Turns cells from `first` on inside out: if `contradictions` > 0, those with negative volumes; else, if
+/// `sign` < 0, all. Notes what it turns.
 void turn_by_volumes(Reading& reading, Index first, const std::string& path, Index contradictions, int sign) {
   Mesh& mesh = reading.mesh;
   if (contradictions > 0) {

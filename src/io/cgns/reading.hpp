@@ -25,7 +25,7 @@ struct ZonePlaces {
   int first_section = 0;  ///< index in the metadata; a zone's sections ascend by element number
   int section_count = 0;
   std::vector<Index> centred_cells = {};  ///< cells of the base's dimension ("CellCenter")
-  std::map<std::string, int> steps = {};  ///< time step of solutions and grids, from 1; empty if just one
+  std::map<std::string, int> steps = {};  ///< step of each solution and grid, from 1; empty for one step
 };
 
 /// The values of one node, which become all or part of an array.

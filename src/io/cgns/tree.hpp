@@ -47,7 +47,7 @@ Node integer_node(std::string name, std::string label, const std::vector<std::in
 /// Returns the bytes per value of a type, 0 for an unknown type.
 std::size_t size_of_type(std::string_view type);
 
-/// Returns `work(zero)` for a zero of the C++ type of a type of numbers (double if unknown).
+/// Returns `work(zero)`, where `zero` has the C++ type for a CGNS type of numbers (double if unknown).
 template <class Work>
 auto with_number_of_type(std::string_view type, const Work& work) {
   if (type == "R4") return work(float{});

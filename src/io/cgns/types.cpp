@@ -67,11 +67,11 @@ constexpr std::array kTypes{
 // order in the file: nodes on the edges between the two triangles precede those on the edges of the upper
 // triangle
 constexpr std::array kWedge{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17};
-// nodes on edges as for wedges; then the faces (bottom, front, right, back, left, top), then the centre
+// nodes on edges as for wedges, then those on faces (bottom, front, right, back, left, top), then the centre
 constexpr std::array kHexahedron{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
                                  18, 19, 12, 13, 14, 15, 24, 22, 21, 23, 20, 25, 26};
 
-/// Returns the first type that `is_wanted`, null if there is none.
+/// Returns the first type for which `is_wanted` returns true, null if there is none.
 template <class IsWanted>
 const ElementType* first_type(const IsWanted& is_wanted) {
   const auto* const found = std::find_if(kTypes.begin(), kTypes.end(), is_wanted);

@@ -43,7 +43,8 @@ std::vector<Index> moved_values(const std::vector<Index>& values, std::span<cons
 }
 
 /// Returns whether the vertices of a cell are the corners of a polyhedron's faces, each once.
-/// `polyhedron_with`: the last polyhedron with each vertex as a corner. Call this once for each polyhedron.
+/// `polyhedron_with`: for each vertex, the last polyhedron found to have this corner. Call once for each
+/// polyhedron.
 bool has_corners_of(Index polyhedron, std::span<const Index> cell, const CgnsMetadata& metadata,
                     std::vector<Index>& polyhedron_with) {
   std::size_t corners = 0;
@@ -57,8 +58,8 @@ bool has_corners_of(Index polyhedron, std::span<const Index> cell, const CgnsMet
                      [&](Index vertex) { return std::exchange(polyhedron_with[vertex], -1) == polyhedron; });
 }
 
-/// Returns whether the mesh's cells of polygons and polyhedra still have the vertices of the metadata. O(size
-/// of the mesh).
+/// Returns whether the cells that are polygons or polyhedra still have the vertices that the metadata give.
+/// O(size of the mesh).
 bool polyhedra_fit(const Mesh& mesh, const CgnsMetadata& metadata) {
   if (metadata.polyhedra == nullptr) return true;
   Index cells = 0;
@@ -157,7 +158,8 @@ void release_arrays(const Mesh& mesh, CgnsMetadata& metadata, const Numbering& n
 }
 
 /// Removes nodes that have nothing left to write: sections without cells, conditions and solutions without
-/// members, and arrays that are gone. Also removes, and notes, data in the order of a list that changed.
+/// members, and arrays that are gone. Also removes data in the order of a list whose members changed, and
+/// notes this.
 class Pruner {
  public:
   Pruner(const Mesh& mesh, const CgnsMetadata& metadata, const Numbering& numbering, Notes& notes)

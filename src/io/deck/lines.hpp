@@ -26,8 +26,8 @@ class DeckLines {
   /// until the next call.
   std::string_view take();
   /// Estimates how many of the next lines of the present file `take_regular` may take, at most 262,144.
-  /// Returns 0 if parallel reading would not pay: before a near `*` or after an irregular line. Amortised
-  /// O(1) for each line.
+  /// Returns 0 where parallel reading would not pay, such as shortly before a `*` or after an irregular line.
+  /// Amortised O(1) for each line.
   Index lines_to_take();
   /// Takes the next nonblank lines of the present file on all threads, up to the first irregular line. The
   /// caller then reads on line by line.
@@ -74,7 +74,7 @@ class DeckLines {
   FilePath main_;
   std::vector<OpenFile> files_;
   std::string line_end_;
-  std::string last_line_;  // of an included file, with the line end that it lacked
+  std::string last_line_;  // last line of an included file, with the line end that it lacked
   std::vector<std::string> included_;
 };
 

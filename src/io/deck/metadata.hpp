@@ -56,7 +56,8 @@ struct DeckMetadata final : FormatMetadata {
   [[nodiscard]] DeckNumbers numbers(const Mesh& mesh) const {
     return {{deck->nodes, vertex_of, mesh.vertex_ids}, {deck->elements, cell_of, mesh.cell_ids}};
   }
-  /// Returns the numbers of a mesh that came from elsewhere: its ids if they can be numbers up to `largest`.
+  /// Returns the numbers of a mesh that came from elsewhere: its ids if they can be numbers up to `largest`,
+  /// else 1, 2, 3 …
   [[nodiscard]] DeckNumbers new_numbers(const Mesh& mesh, std::int64_t largest) const {
     return {{deck->nodes, {}, ids_as_numbers(mesh.vertex_ids, largest)},
             {deck->elements, {}, ids_as_numbers(mesh.cell_ids, largest)}};
@@ -114,7 +115,8 @@ struct LaterNode {
   Place place;          ///< place of the element in the deck
 };
 
-/// Sets the vertices of cells for `nodes`. Calls `fail(later)`, which throws, if there is no such node.
+/// Sets the vertices of `cells` that `nodes` lists. Calls `fail(later)`, which throws, if there is no such
+/// node.
 template <class Place, class Fail>
 void resolve(const std::vector<LaterNode<Place>>& nodes, const IdMap& numbers, Cells& cells, Fail fail) {
   for (const LaterNode<Place>& later : nodes) {

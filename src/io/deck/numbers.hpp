@@ -16,8 +16,8 @@
 
 namespace meshorder {
 
-/// Replaces each position p by moves[p]; an empty `moves` changes nothing. Returns whether all items still
-/// have a position.
+/// Replaces each position p by moves[p]; empty `places` are 0, 1, 2 …, and empty `moves` change nothing.
+/// Returns whether all items still have a position.
 bool move_places(std::vector<Index>& places, std::span<const Index> moves);
 
 /// Returns whether ids are valid numbers of nodes or elements: from `smallest` to `largest`, each only once.
@@ -104,19 +104,20 @@ struct DeckNumbers {
 std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck, const Mesh& mesh,
                                    const DeckNumbers& numbers, Notes& notes);
 
-/// Notes that ids of a mesh are not written if they are not valid numbers (see `can_be_numbers`).
+/// If the ids of vertices or cells are not valid numbers (see `can_be_numbers`), notes that they are not
+/// written.
 void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t largest, Notes& notes,
                     std::int64_t smallest = 1);
 
 /// Returns whether all nodes and elements keep the numbers of their deck. If not, throws InputError
-/// - if new numbers are not valid: they repeat, or lie outside the range from 1 (or the least number in the
-///   file, if it is less) to `largest` (or the greatest number in the file, if it is greater);
+/// - if new numbers are not valid: they repeat, are below both 1 and the least number in the file, or are
+///   above both `largest` and the greatest number in the file;
 /// - if there are `unknown` cards: they may name items by number, so no number can change.
 /// Time as `can_be_numbers`.
 bool keep_numbers(const DeckNumbers& numbers, std::int64_t largest, const std::vector<std::string>& unknown,
                   const FilePath& path);
 
-/// Notes that coordinates were rounded to the width of `field`, if any were.
+/// If `coordinates` > 0, notes that so many coordinates were rounded to the width of `field`.
 void note_rounded(std::int64_t coordinates, std::string_view field, Notes& notes);
 
 /// Notes that all numbers stay because of `unknown` cards, which may name nodes or elements. Notes nothing if

@@ -159,7 +159,8 @@ Columns attributes_of(Planning& planning, const BlockPlan& block) {
 
 namespace {
 
-/// Returns the node numbers, from 1, of `count` elements of a block from `first` on, in the file's order.
+/// Returns the node numbers, from 1, of elements `first` … `first + count − 1` of a block, each in the file's
+/// node order.
 std::vector<std::int32_t> connectivity(const Mesh& mesh, const CellPart& block, Index first, Index count) {
   const auto nodes = static_cast<std::size_t>(block.nodes);
   std::vector<std::int32_t> result(static_cast<std::size_t>(count) * nodes);

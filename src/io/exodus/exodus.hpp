@@ -37,7 +37,7 @@ namespace meshorder::exodus {
 inline constexpr std::string_view kAttribute = "attribute ";
 inline constexpr std::string_view kMap = "map ";
 inline constexpr std::string_view kFactors = " factors";
-/// Name of the block property with the labels of cells, if these cannot be the blocks' ids.
+/// Name of the block property that holds the cells' labels if the blocks' ids cannot equal them.
 inline constexpr std::string_view kLabelProperty = kLabel;
 
 // ---- elements
@@ -50,13 +50,13 @@ std::optional<Shape> shape_of(std::string_view type, int nodes, int dimension);
 /// Returns the name of the element type for these cells; empty if other programs do not know such a type.
 std::string_view type_of(Shape shape, int nodes);
 
-/// Returns the position of each vertex of a cell in the file's element; empty if both orders agree.
+/// Returns, for each vertex of a cell, its position in the file's element; empty if both orders agree.
 std::span<const int> file_order(Shape shape, int nodes);
 
 inline constexpr int kMostSides = 6;
 
-/// Returns how many faces of a surface element are its first sides, before its edges, as in the library of
-/// Exodus II: 2 for triangles in three dimensions and for shells of four corners, else 0.
+/// Returns how many of a surface element's first sides are faces, not edges, as in the library of Exodus II:
+/// 2 for triangles in three dimensions and for shells of four corners, else 0.
 int faces_of(Shape shape, std::string_view type, int dimension);
 
 /// Returns the number of nodes of side `side`, counted from 1; 0 if there is no such side.
@@ -73,15 +73,15 @@ struct Series {
   std::vector<std::string> arrays = {};  ///< the mesh's array of each step; empty if there are no values
   // both lists have an entry for each block if this is an element variable, else one entry
   std::vector<bool> present = {};   ///< whether the file's truth table marks values
-  std::vector<bool> declared = {};  ///< whether the file has its netCDF variable, even without steps
+  std::vector<bool> declared = {};  ///< whether the file has the netCDF variable, even without steps
 };
 
 struct BlockRecord {
   std::int64_t id = 0;
   std::string name;     ///< name in the file
-  std::string in_mesh;  ///< name of the set of its cells, empty if there is none
+  std::string in_mesh;  ///< name of the mesh's set of the block's cells; empty if there is none
   std::string type;
-  std::int64_t label = 0;  ///< label of its cells; label, shape and nodes identify the block
+  std::int64_t label = 0;  ///< label of the block's cells; label, shape and nodes identify the block
   Shape shape = Shape::vertex;
   int nodes = 0;  ///< 0 for a block without elements
   NcType connect_type = kInt;
@@ -99,7 +99,7 @@ struct SetRecord {
   NcType factor_type = kDouble;
   int factor_width = 0;          ///< side sets: the largest number of factors of a side
   bool factors_by_nodes = true;  ///< side sets: a side has a factor for each node, not `factor_width` factors
-  std::vector<Series> variables;  ///< one for each variable of the family, without names
+  std::vector<Series> variables;  ///< one for each variable of the family, which has the names
   std::vector<std::int64_t> properties;
 };
 
@@ -133,10 +133,10 @@ struct SetKind {
   std::string_view word;         ///< used in names of arrays and in messages
   std::string_view count;        ///< name of the dimension that counts the sets
   std::string_view prefix;       ///< begins the names of the netCDF variables of ids, names and status
-  std::string_view members;      ///< name of the variable of members
-  std::string_view size;         ///< name of the dimension that counts the members
-  std::string_view factor_size;  ///< name of the dimension that counts the factors
-  std::string_view variable;     ///< "nset" in vals_nset_var, name_nset_var, nset_var_tab
+  std::string_view members;      ///< begins the name of a set's netCDF variable of members
+  std::string_view size;         ///< begins the name of the dimension that counts a set's members
+  std::string_view factor_size;  ///< begins the name of the dimension that counts a set's factors
+  std::string_view variable;     ///< part of names, as "nset" in vals_nset_var, name_nset_var, nset_var_tab
   Association association;
 };
 

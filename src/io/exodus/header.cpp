@@ -155,7 +155,7 @@ class HeaderReader {
       parts.push_back(std::move(part));
     }
     for (const VariablePart& part : parts) {
-      // if only one variable has records, these follow each other without gaps
+      // if only one variable has records, its records follow each other without gaps
       const std::uint64_t step = record_variables == 1 ? part.bytes : record;
       if (part.in_records && (records_ == 0 || part.bytes == 0)) continue;
       const std::uint64_t before = part.in_records ? records_ - 1 : 0;

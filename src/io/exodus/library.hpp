@@ -11,8 +11,8 @@ namespace meshorder::exodus {
 void load_library();
 
 /// A lock on libnetcdf and libhdf5: while it lives, no other thread can enter them, and no plug-ins are
-/// loaded. The first object starts libnetcdf and keeps libnetcdf from reading settings in the current folder
-/// or in HOME (.ncrc, .daprc, .dodsrc) and cloud credentials.
+/// loaded. The first object starts libnetcdf and keeps libnetcdf from reading cloud credentials, and settings
+/// (.ncrc, .daprc, .dodsrc) in the current folder or in HOME.
 class Library {
  public:
   Library();

@@ -109,7 +109,7 @@ class NcInput {
   [[nodiscard]] std::size_t count(const std::string& dimension) const;
   /// Returns the lengths along a variable's dimensions.
   [[nodiscard]] std::vector<std::size_t> shape(const Variable& variable) const;
-  /// Returns the number of values. Throws InputError if the file is too small to hold them.
+  /// Returns the number of a variable's values. Throws InputError if the file is too small to hold them.
   [[nodiscard]] std::size_t size(const Variable& variable) const;
   /// Returns `count`. Throws InputError if `count` values of `bytes_each` bytes exceed the memory limit for
   /// sizes that a file claims.
@@ -123,21 +123,21 @@ class NcInput {
   [[nodiscard]] std::string text(const Variable& variable, const std::string& attribute) const;
 
   /// Reads a part of the values as 32-bit integers: along each dimension `counts` values from `starts` on.
-  /// Throws InputError if the type is not whole or a value does not fit.
+  /// Throws InputError if the type is not whole, a value does not fit or the values cannot be read.
   void read(const Variable& variable, const std::vector<std::size_t>& starts,
             const std::vector<std::size_t>& counts, std::int32_t* values) const;
   [[nodiscard]] std::vector<std::int64_t> integers(const Variable& variable) const;
   [[nodiscard]] std::vector<std::int64_t> integers(const Variable& variable,
                                                    const std::vector<std::size_t>& starts,
                                                    const std::vector<std::size_t>& counts) const;
-  /// Returns a part of the values, as `read`.
+  /// Returns the part of the values that `read` reads, as real numbers; the type may be any number type.
   [[nodiscard]] std::vector<double> reals(const Variable& variable, const std::vector<std::size_t>& starts,
                                           const std::vector<std::size_t>& counts) const;
   /// Returns the bytes of all values in the byte order of this machine.
   [[nodiscard]] std::string bytes(const Variable& variable) const;
   /// Returns the rows of a table of characters, each up to its zero byte and without blanks at its end.
   [[nodiscard]] std::vector<std::string> texts(const Variable& variable) const;
-  /// Returns a part of the values, as `read`, in the type of the file.
+  /// Returns the part of the values that `read` reads, in the variable's type, which may be any number type.
   [[nodiscard]] Values values(const Variable& variable, const std::vector<std::size_t>& starts,
                               const std::vector<std::size_t>& counts) const;
 

@@ -183,7 +183,7 @@ void read_points(Reading& reading) {
   }
 }
 
-/// Appends those elements of a block that are in the range to the mesh.
+/// Appends to the mesh those elements of a block that are in the range.
 void read_elements(Reading& reading, const Variable& connect, std::size_t b) {
   const NcInput& file = reading.file;
   const BlockRecord& block = reading.metadata->blocks[b];
@@ -246,7 +246,7 @@ struct ValuesOfBlocks {
   std::vector<std::size_t> blocks;  ///< blocks of the values; all of them have elements
 };
 
-/// Reads the attributes of a block and appends them to `columns`, by name of the array.
+/// Reads the attributes of a block and appends them to `columns`, whose keys are names of arrays.
 void read_attributes(Reading& reading, std::size_t b, std::map<std::string, ValuesOfBlocks>& columns) {
   const NcInput& file = reading.file;
   BlockRecord& block = reading.metadata->blocks[b];
@@ -472,8 +472,8 @@ void read_maps(Reading& reading) {
   read_named_maps(reading, "elem", "em", Association::cells, metadata.element_maps);
 }
 
-/// Returns whether a dimension counts nodes, elements or entries of a set. If so, its variables depend on the
-/// order of the mesh.
+/// Returns whether a dimension counts nodes, elements or entries of a set. If so, variables with this
+/// dimension depend on the order of the mesh.
 bool is_of_nodes_or_elements(const Reading& reading, const Dimension& dimension) {
   constexpr std::array<std::string_view, 6> kWhole{"num_nodes", "num_elem", "num_edge",
                                                    "num_face",  "num_node", "num_elements"};

@@ -34,7 +34,7 @@ struct Reading {
 
   /// Adds an array, under a name that no other array has, and returns that name.
   std::string add_array(DataArray array, MeshPart::ArrayRows rows = {});
-  /// Adds an array on the elements of some blocks that have elements; `values` lists the elements block by
+  /// Adds an array on the elements of `blocks`, none of which is empty; `values` lists the values block by
   /// block. Returns the array's name.
   std::string add_array(std::string name, Values values, const std::vector<std::size_t>& blocks);
   /// Adds a set, under a name that no other set has, and returns that name.
@@ -49,7 +49,7 @@ struct Reading {
   [[nodiscard]] Index count(Association association) const {
     return association == Association::vertices ? nodes : elements;
   }
-  /// Returns which rows to read of a variable that has a row for each vertex or cell.
+  /// Returns which rows to read if a variable has a row for each vertex or cell.
   [[nodiscard]] Rows rows(Association association) const {
     const MeshRange own = range(association);
     return {static_cast<std::size_t>(own.first), static_cast<std::size_t>(own.size())};
@@ -58,7 +58,7 @@ struct Reading {
   [[nodiscard]] MeshRange own_of_block(std::size_t b) const {
     return MeshRange{block_ends[b], block_ends[b + 1]}.common(part.ranges.cells);
   }
-  /// Returns which rows to read of a variable that has a row for each cell of a block.
+  /// Returns which rows to read if a variable has a row for each cell of a block.
   [[nodiscard]] Rows rows_of_block(std::size_t b) const {
     const MeshRange own = own_of_block(b);
     return {static_cast<std::size_t>(own.first - block_ends[b]), static_cast<std::size_t>(own.size())};

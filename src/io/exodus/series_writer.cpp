@@ -24,7 +24,8 @@ struct Target {
   Index count;
 };
 
-/// Writes a nodal or element variable at all steps to the targets, along the last dimension of each.
+/// Writes a nodal or element variable at all steps to the targets, along the last dimension of each target's
+/// variable.
 void put_steps(const SeriesPlan& series, Index items, std::vector<Target> targets) {
   const DataArray* last = nullptr;
   std::vector<Index> table;

@@ -34,7 +34,7 @@ struct Members {
   std::vector<Index> members;
   std::vector<Index> places;        ///< position of each member's first entry
   std::vector<std::int32_t> masks;  ///< sides of each member: bit s − 1 for side s
-  std::vector<Index> row_of_entry;  ///< for each entry, the index of its member here; −1 for a repeated entry
+  std::vector<Index> row_of_entry;  ///< index of each entry's member in `members`; −1 for a repeated entry
   int most_sides = 1;               ///< largest number of sides of a member
 };
 
@@ -42,7 +42,7 @@ std::int32_t bit_of_side(int side) { return 1 << (side - 1); }
 
 int bit_count(std::int32_t mask) { return std::popcount(static_cast<std::uint32_t>(mask)); }
 
-/// Returns the members of a set. Drops an entry if an earlier one has the same member and side.
+/// Returns the members of a set. Drops an entry if an earlier entry has the same member and side.
 Members without_repeated(const Entries& own, bool are_sides) {
   const Index count = index_size(own.members);
   std::vector<Index> entries = index_range(0, count);
@@ -127,7 +127,7 @@ class SetReader {
     return fmt::format("vals_{}_var{}{}{}", kind_.variable, v + 1, kind_.prefix, set);
   }
 
-  /// Returns the position, from 0, of the item with a number. Throws InputError if the item does not exist.
+  /// Returns the position, from 0, of node or element `number`. Throws InputError if it does not exist.
   [[nodiscard]] Index place_of(std::int32_t number, const Variable& variable, std::size_t entry) const {
     const auto limit = static_cast<std::uint32_t>(reading_.count(kind_.association));
     const std::uint32_t place = static_cast<std::uint32_t>(number) - 1;
@@ -172,8 +172,8 @@ class SetReader {
     set.in_mesh = is_sides_ ? "" : reading_.add_set({set.in_mesh, kind_.association, {}});
   }
 
-  /// Notes that repeated entries are dropped. If only a part is read, instead records the counts for the
-  /// caller.
+  /// Notes that repeated entries are dropped. If only a part of the mesh is read, records the counts for the
+  /// caller instead.
   void note_repeated(const SetRecord& set, std::size_t size, const std::vector<Index>& row_of_entry) {
     const std::string name = title(kind_, set.in_mesh);
     const auto repeated = std::count(row_of_entry.begin(), row_of_entry.end(), Index{-1});
@@ -238,7 +238,7 @@ class SetReader {
 
   // ---- values of members
 
-  /// Adds an array with a row for each member; returns its name.
+  /// Adds an array with a row for each member; returns the array's name.
   std::string add_rows(const std::string& name, const Members& set, Values values, int components = 1) {
     return reading_.add_array({.name = name,
                                .association = kind_.association,
@@ -254,12 +254,12 @@ class SetReader {
     int length;
   };
 
-  /// Adds an array with a row for each member: the values of its sides in ascending order, `width` values for
-  /// each side, padded.
+  /// Adds an array with a row for each member: the values of its sides, in ascending order of sides, `width`
+  /// for each, padded with missing values.
   ///
   /// @param piece_of  returns the piece of entry i; the pieces ascend
-  /// @param read      `read(first, count)` returns values of the list. Pieces that lie within
-  ///                  `values_at_once` values are read together
+  /// @param read      `read(first, count)` returns `count` values of the list from `first` on. Pieces that
+  ///                  lie within `values_at_once` values are read together
   template <class PieceOf, class Read>
   std::string add_values(const std::string& name, const Entries& own, const Members& set, int width,
                          const PieceOf& piece_of, const Read& read) {

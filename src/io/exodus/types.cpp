@@ -48,7 +48,7 @@ constexpr std::array kWrittenTypes{
     WrittenType{Shape::hexahedron, 20, "HEX20"},    WrittenType{Shape::hexahedron, 27, "HEX27"},
 };
 
-// order in the file: nodes on the edges between the two triangles precede those on the edges of the upper
+// order in the file: nodes on the edges between the two triangles precede the nodes on the edges of the upper
 // triangle
 constexpr std::array kWedge{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17};
 // nodes on edges as for wedges; then the centre, then the faces (bottom, top, left, right, front, back)

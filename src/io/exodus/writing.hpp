@@ -70,7 +70,7 @@ struct Writing : Planning {
 /// `of_file`: their type in the file that the mesh came from.
 NcType written_type(NcType of_file, const Values& values);
 
-/// Returns whether all values are integers, or real numbers that are whole and at most 2^52 in size.
+/// Returns whether all values are integers, or real numbers that are whole and at most 2^52 in magnitude.
 bool are_whole(const Values& values);
 
 /// Returns the values, which satisfy `are_whole`, as whole numbers.
@@ -170,8 +170,8 @@ void put_as(NcType type, const DataArray* array, const Put& put) {
 /// Divides the cells, which already are in the order of the file, into `planning.blocks`.
 void plan_blocks(Planning& planning, bool is_own);
 
-/// Names each block after a set that has exactly its cells, unless the set was an element set in the file.
-/// Returns all other sets of cells.
+/// Names each block after a set that has exactly the block's cells, unless the set was an element set in the
+/// file. Returns all other sets of cells.
 std::vector<const EntitySet*> name_blocks(Planning& planning);
 
 /// Returns the attributes of a block. A block of the file that the mesh came from keeps the file's

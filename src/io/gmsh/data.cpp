@@ -61,7 +61,8 @@ View read_view_head(NumberReader& source, std::string_view section) {
   return view;
 }
 
-/// Returns the number of nodes in the entry of cell c by the rule `per`; `fixed` is for PerElement::fixed.
+/// Returns the number of nodes in the entry of cell c by the rule `per`; `fixed`: the number by
+/// PerElement::fixed.
 int nodes_of_entry(const Mesh& mesh, Index c, PerElement per, int fixed) {
   const int vertices = mesh.cells.vertex_count(c);
   switch (per) {
@@ -134,7 +135,7 @@ Entries read_entries(ReadContext& reading, const View& view) {
   return entries;
 }
 
-/// Returns the values of the entries as rows of one width, padded with 0; `width` receives this width.
+/// Returns the values of the entries as rows of one width, padded with 0; sets `width` to this width.
 std::vector<double> even_rows(const ReadContext& reading, Entries& entries, const View& view, Index& width) {
   const int components = view.integers[1];
   int most = 1;
@@ -280,7 +281,7 @@ bool has_place(const DataArray& array) {
   return !are_texts(array.values) && gmsh_components(array.components) > 0;
 }
 
-/// Returns the number of components of a view for an array that `has_place`. Notes changes.
+/// Returns the number of components of a view for an array; `has_place(array)` must be true. Notes changes.
 Index components_of_view(const DataArray& array, Notes& notes) {
   const Index components = gmsh_components(array.components);
   if (components != array.components) {

@@ -39,7 +39,7 @@ struct ElementType {
   int nodes;
 };
 
-/// Returns a type by number; nullptr if unknown, or without a Shape or a fixed number of nodes.
+/// Returns a type by number; nullptr if it is unknown or lacks a Shape or a fixed number of nodes.
 const ElementType* find_type(int number);
 
 /// Returns the type of cells of that shape with `nodes` vertices, or nullptr. If Gmsh has two such types (the
@@ -56,7 +56,7 @@ inline constexpr std::string_view kCellEntity = "gmsh:geometrical";    ///< tag 
 inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< dimension of each cell's entity
 inline constexpr std::string_view kCellType = "gmsh:type";  ///< Gmsh's type if shape and nodes leave a choice
 inline constexpr std::string_view kCellPartitions = "gmsh:partitions";  ///< 2.x: tags from the third on
-inline constexpr std::string_view kCellTagCount = "gmsh:tag_count";     ///< 2.x: number of tags if it differs
+inline constexpr std::string_view kCellTagCount = "gmsh:tag_count";  ///< 2.x: number of tags if cells differ
 inline constexpr std::string_view kCellGhosts = "gmsh:ghosts";    ///< owner, number of ghosts, ghosts, zeros
 inline constexpr std::string_view kNodeEntity = "gmsh:dim_tags";  ///< dimension and tag of a node's entity
 inline constexpr std::string_view kNodeParameters = "gmsh:parametric";  ///< 1 if given, else 0; u, v, w
@@ -197,7 +197,7 @@ void keep_array(Mesh& mesh, std::string_view name, Association association, Inde
 /// Adds the array kCellType if shape and number of nodes do not determine the type of every cell.
 void keep_unusual_types(Mesh& mesh, const std::vector<std::int32_t>& numbers);
 
-/// Adds the array kNodeParameters with these values; later nodes have no parameters.
+/// Adds the array kNodeParameters with these values; nodes after the last value have no parameters.
 void keep_parameters(Mesh& mesh, std::vector<double> values);
 
 /// Fails if `rows` contains a row twice; `section` is for the message. O(rows · log rows).
@@ -302,9 +302,9 @@ struct WriteContext {
   std::vector<const ElementType*> types;      ///< type of each cell
   std::vector<std::int64_t> node_ids;         ///< empty: 1, 2, 3 …
   std::vector<std::int64_t> cell_ids;         ///< empty: 1, 2, 3 …
-  std::vector<std::int32_t> cell_dimensions;  ///< 4.x: of each cell's entity
-  std::vector<std::int32_t> cell_tags;        ///< 4.x: of each cell's entity
-  std::vector<std::int32_t> node_entities;    ///< 4.x, $ParametricNodes: dimension and tag for each node
+  std::vector<std::int32_t> cell_dimensions;  ///< 4.x: dimension of each cell's entity
+  std::vector<std::int32_t> cell_tags;        ///< 4.x: tag of each cell's entity
+  std::vector<std::int32_t> node_entities;    ///< 4.x, $ParametricNodes: dimension, tag of each node's entity
   std::vector<const DataArray*> placed;       ///< arrays that other sections hold: they need no view
   NamedParts parts;                           ///< arrays and sets of the mesh, by name
 
@@ -322,11 +322,11 @@ const std::vector<double>* parameters_of(const Mesh& mesh);
 /// sets of cells and any entities kept from an earlier conversion.
 void classify(GmshMetadata& layout, WriteContext& output, Notes& notes);
 
-/// Adds a view for an array that has no view yet, or a note if Gmsh cannot hold it.
+/// Adds a view for an array that has no view yet, or a note if Gmsh cannot hold the array.
 void add_view(GmshMetadata& layout, const DataArray& array, Notes& notes);
 
-/// Adapts each view whose array was replaced to the components of the new array. A view that cannot hold the
-/// new array gets no array. Notes changes.
+/// Adapts each view whose array now has another number of components. A view that cannot hold its new array
+/// gets no array. Notes changes.
 void refit_views(GmshMetadata& layout, const NamedParts& parts, Notes& notes);
 
 /// Returns a name that fits between double quotes in one line.

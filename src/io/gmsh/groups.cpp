@@ -117,7 +117,7 @@ Groups groups_by_label(const Mesh& mesh, const std::vector<std::int32_t>& labels
   return result;
 }
 
-/// Splits groups: the cells of a group that are in the set become a new group with `physical`.
+/// Splits groups: those cells of each group that are in the set become a new group with `physical`.
 void split_by_set(Groups& groups, const EntitySet& set, std::int32_t physical) {
   std::map<Index, Index> inside;  // new group by old group
   std::set<Index> parts;          // the new groups
@@ -135,8 +135,8 @@ void split_by_set(Groups& groups, const EntitySet& set, std::int32_t physical) {
   }
 }
 
-/// Gives each group with cells a box and a tag. The first group that wants a tag gets it, others get new
-/// tags.
+/// Gives each group with cells a box and a tag. The first group that wants a tag gets this tag, all other
+/// groups get new tags.
 void assign_tags(const Mesh& mesh, Groups& groups) {
   std::array<std::int32_t, 4> last{};
   for (const Group& group : groups.groups) {
@@ -157,8 +157,8 @@ void assign_tags(const Mesh& mesh, Groups& groups) {
   }
 }
 
-/// Returns each node's entity: from the array kNodeEntity if that array is valid, else the first entity of
-/// the highest dimension. Adds new entities to `entities`.
+/// Returns each node's entity: from the array kNodeEntity if that array is valid, else, for all nodes, the
+/// first entity of the highest dimension. Adds new entities to `entities`.
 std::vector<std::int32_t> entities_of_nodes(const Mesh& mesh, std::map<Entity, Group>& entities,
                                             WriteContext& output) {
   std::vector<std::int32_t> kept = integers_of(mesh, kNodeEntity, Association::vertices);

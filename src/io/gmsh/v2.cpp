@@ -63,8 +63,8 @@ void read_element_body(ReadContext& reading, const Element& element, Tags& tags,
   add_cell(reading.mesh, *element.type, nodes);
 }
 
-/// Reads at most `most` elements of a text on all threads, up to the first with a fault or with another type
-/// or number of tags than `last`. Adds them to `tags`, `ids` and the mesh; returns their number.
+/// Reads at most `most` elements of a text on all threads, up to the first element with a fault or with
+/// another type or number of tags than `last`. Adds them to `tags`, `ids` and the mesh; returns their number.
 Index read_alike(ReadContext& reading, const Element& last, Index most, Tags& tags,
                  std::vector<std::int64_t>& ids) {
   const auto tag_count = static_cast<std::size_t>(last.tag_count);
@@ -142,7 +142,7 @@ Index read_tag_count(NumberReader& source) {
                               source.binary ? 4 : 2);
 }
 
-/// Adds the tags first, first + 1, … of all cells as an array of `components`; missing tags are 0.
+/// Adds the tags `first`, `first` + 1, … of all cells as an array of `components`; missing tags are 0.
 void keep_tags_as(Mesh& mesh, std::string_view name, const Tags& tags, std::size_t first,
                   std::size_t components) {
   std::vector<std::int32_t> values(tags.size() * components, 0);

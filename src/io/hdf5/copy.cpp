@@ -42,8 +42,8 @@ unsigned order_flags(hid_t group) {
   return H5Pget_link_creation_order(creation.id(), &flags) < 0 ? 0 : flags;
 }
 
-/// Returns the creation properties for a copy of a group, which keeps the order of links if the group does.
-/// The group's own properties cannot be used: they hold the addresses of its links in the old file.
+/// Returns the creation properties for a copy of a group. The copy records the order of links if the group
+/// does. The group's own properties cannot be used: they hold the addresses of its links in the old file.
 Handle creation_of_copy(hid_t group) {
   Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
   if (const unsigned flags = order_flags(group); flags != 0) H5Pset_link_creation_order(creation.id(), flags);

@@ -60,8 +60,8 @@ class File {
   [[nodiscard]] std::optional<std::size_t> number_type(const std::string& path) const;
   /// Returns the values of a dataset that `info` accepts, row by row, in its own number type.
   [[nodiscard]] Values read(const std::string& path) const;
-  /// Returns whole numbers as indices. A number out of range becomes the nearest 32-bit limit, which is not
-  /// an index.
+  /// Returns the whole numbers of a dataset as indices. A number out of range becomes the nearest 32-bit
+  /// limit, which is not an index.
   [[nodiscard]] std::vector<Index> read_indices(const std::string& path) const;
   /// Returns the byte offset in the file of the values of a dataset that `info` accepts; 0 if the dataset has
   /// no values. Returns nullopt unless the values are contiguous and in this machine's byte order.
@@ -75,7 +75,7 @@ class File {
   /// Returns the names in a group, ascending; empty if there is no such group.
   [[nodiscard]] std::vector<std::string> names(const std::string& group) const;
   /// Returns the texts of a dataset. Its rows are texts of any length, or texts of one length, at most 1,024
-  /// bytes. Cuts the latter at the first zero byte and removes blanks at their ends.
+  /// bytes. Cuts all texts at the first zero byte; removes the blanks at the end of texts of one length.
   [[nodiscard]] std::vector<std::string> read_texts(const std::string& path) const;
   /// Returns whether there is a dataset that `read_texts` understands.
   [[nodiscard]] bool has_texts(const std::string& path) const;
@@ -100,8 +100,8 @@ class File {
                    char filling = '\0');
   /// Makes a dataset of texts of any length. Its type says ASCII even if there are other characters.
   void write_strings(const std::string& path, std::span<const std::string> texts);
-  /// Makes a dataset of numbers, whose type is an alternative of Values. Allocates room in the file without
-  /// writing values.
+  /// Makes a dataset of numbers; `alternative` is the index of their type in Values. Allocates room in the
+  /// file without writing values.
   void make_room(const std::string& path, std::size_t alternative, const std::vector<std::uint64_t>& shape);
   /// Allocates room in the file for the values of a dataset that has no room yet. Writes only the first
   /// value, as zero.
@@ -123,8 +123,8 @@ class File {
 
   /// Returns the bytes of a copy of this file in which the datasets at `paths` keep their types, attributes,
   /// chunks and filters, but have no values. A path that ends in "/" is the path of a group that will get a
-  /// new member. If several of the paths lead to one dataset or group, each path leads to its own in the
-  /// copy. Everything else is copied.
+  /// new member. If several of the paths lead to one dataset or group, each leads to a dataset or group of
+  /// its own in the copy. Everything else is copied.
   [[nodiscard]] std::string without_values(const std::set<std::string>& paths) const;
   /// Returns the bytes of a file in memory.
   [[nodiscard]] std::string bytes() const;

@@ -21,7 +21,7 @@ inline void (*at_first_entry)() = nullptr;
   return lock;
 }
 
-/// Stops libhdf5 from closing files at the end of the process: it would crash there when it tries again to
+/// Stops libhdf5 from closing files at the end of the process: libhdf5 would crash when it tries again to
 /// close a file that it could not close. For programs, not libraries. Call it before any use of libhdf5.
 void close_nothing_at_exit();
 

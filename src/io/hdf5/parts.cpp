@@ -15,7 +15,8 @@ std::array<hid_t, 10> native_types() {
 }
 
 std::size_t alternative_of(hid_t type) {
-  // compares with known types only: in damaged files, the library does not check the bit fields of others
+  // compares with known types only: in damaged files, the library does not check the bit fields of other
+  // types
   constexpr bool kIsBig = std::endian::native == std::endian::big;
   const std::array<hid_t, 10> known = native_types();
   const auto is_other_order_of = [&](hid_t native) {

@@ -13,7 +13,7 @@
 namespace meshorder::hdf5 {
 namespace {
 
-/// Returns the bytes of each text if a type is of texts of one length, at most 1,024 bytes; else 0.
+/// Returns the length in bytes of the texts of a type, if they have one length of at most 1,024; else 0.
 std::size_t width_of_texts(hid_t type) {
   constexpr std::size_t kMostCharacters = 1024;
   if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) <= 0) {

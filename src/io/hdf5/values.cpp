@@ -17,7 +17,7 @@
 namespace meshorder::hdf5 {
 namespace {
 
-/// Returns the name of a filter of the dataset that this library lacks; empty if the library has all filters.
+/// Returns the name or number of a dataset's filter that this library lacks; empty if it has all filters.
 std::string lacking_filter(hid_t creation) {
   const int filters = H5Pget_nfilters(creation);
   for (int i = 0; i < filters; ++i) {
@@ -34,7 +34,7 @@ std::string lacking_filter(hid_t creation) {
   return {};
 }
 
-/// Returns the bytes of a chunk, less than 4 GiB in files that the library has written.
+/// Returns the size of a chunk in bytes: less than 4 GiB in files that the library has written.
 std::uint64_t bytes_of_chunk(hid_t creation, hid_t type) {
   std::array<hsize_t, H5S_MAX_RANK> lengths{};
   const int rank = H5Pget_chunk(creation, H5S_MAX_RANK, lengths.data());

@@ -19,7 +19,7 @@ class Visitor {
 
   explicit Visitor(Work work) : work_(std::move(work)) {}
 
-  /// The callback for the library; its data is the Visitor.
+  /// The callback for the library; `visitor` is the Visitor.
   static herr_t visit(hid_t place, const char* name, const Info* info, void* visitor) noexcept {
     auto& self = *static_cast<Visitor*>(visitor);
     try {

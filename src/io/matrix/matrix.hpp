@@ -37,8 +37,8 @@ inline constexpr std::string_view kSize = "size";      ///< array on vertices: s
 /// Returns whether a cell is an entry: a line or a vertex.
 bool is_entry(const Mesh& mesh, Shape shape, int vertices);
 
-/// Claims memory for the vertices, because a file may have a byte or less for each. Throws InputError if the
-/// memory exceeds the limit.
+/// Claims memory for the vertices, because a file may have a byte or less for each vertex. Throws InputError
+/// if the memory exceeds the limit.
 void claim_vertices(Index count);
 
 /// Returns the array of that name if it holds numbers for every vertex or cell; null otherwise.

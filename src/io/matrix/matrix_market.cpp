@@ -75,7 +75,7 @@ struct MatrixMetadata final : StoredMatrix {
 
 // ---- reading
 
-/// Returns the enumerator of that name, in any case; fails at the scanner's line if there is none.
+/// Returns the enumerator of that name, case ignored; fails at the scanner's line if there is none.
 template <NamedEnum Enum>
 Enum parse_word(const Scanner& at, std::string_view word) {
   for (const auto& [value, name] : EnumNames<Enum>::names) {

@@ -209,13 +209,13 @@ class GraphReader {
     return found != back.end() && found->vertex == v && found->value == edge.value;
   }
 
-  /// Returns the neighbours of v with a greater number.
+  /// Returns the neighbours of v whose numbers are greater than v.
   [[nodiscard]] std::span<Neighbour> greater_neighbours(Index v) {
     const std::span<Neighbour> all = neighbours_of(v);
     return {std::upper_bound(all.begin(), all.end(), Neighbour{v, 0}, comes_before), all.end()};
   }
 
-  /// Fails at the first edge whose other vertex does not name it with the same weight.
+  /// Fails at the first edge that its other vertex does not list with the same weight.
   [[noreturn]] void fail_one_sided() {
     Index v = 0;
     const auto is_one_sided = [&](const Neighbour& edge) { return !is_named_back(v, edge); };
@@ -287,7 +287,7 @@ Mesh read_graph(const FilePath& path, Notes& /*notes*/) { return GraphReader(pat
 
 // ---- writing
 
-/// Each vertex's neighbours, ascending, with the cells that join them; the numbers of loops and repeats.
+/// Each vertex's neighbours, ascending, with the cells that join them; counts of loops and repeated lines.
 struct Adjacency {
   explicit Adjacency(const Mesh& mesh) {
     offsets.assign(mesh.points.size() + 1, 0);
@@ -351,7 +351,7 @@ bool is_edge(const Mesh& /*mesh*/, Shape shape, int vertices) {
   return shape == Shape::line && vertices == 2;
 }
 
-/// Puts the edges in the order of a file: by their smaller vertex, then by the other.
+/// Puts the edges in the order of a file: by smaller vertex, then by greater vertex.
 Permutation settle_edges(Mesh& mesh) {
   const bool are_lines =
       std::ranges::all_of(mesh.cells.shapes, [](Shape shape) { return shape == Shape::line; });

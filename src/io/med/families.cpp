@@ -97,8 +97,8 @@ void read_families_of(Reading& reading, Association association) {
   }
 }
 
-/// The family and the groups of some vertices or cells. The groups are a chain, one in each link, as an item
-/// may be in thousands of groups.
+/// The family and the groups of some vertices or cells. The groups form a chain of combinations, one group in
+/// each, as an item may be in thousands of groups.
 struct Combination {
   std::int64_t family;
   std::size_t without_last;       ///< index of the combination without `last_group`
@@ -221,8 +221,8 @@ class FamilyWriter {
   }
 
   /// Returns the number of a family with the groups of `wanted`: `wanted.number` if that family of the file
-  /// has these groups (a missing family has none), else that of another such family; 0 for no groups; or a
-  /// new number.
+  /// has these groups (a missing family has none), else the number of the first family that has them, else 0
+  /// for no groups, else a new number.
   std::int64_t number_for(const Family& wanted) {
     std::vector<std::string> groups = wanted.groups;
     std::sort(groups.begin(), groups.end());
@@ -271,7 +271,7 @@ class FamilyWriter {
   std::deque<std::string> groups_;
   std::map<std::int64_t, std::vector<std::string>> groups_of_;  // groups of each family, by its number
   std::map<std::vector<std::string>, std::int64_t> number_of_;  // first family with the groups
-  std::int64_t last_ = 0;                                       // farthest from 0 within 32 bits
+  std::int64_t last_ = 0;  // family number farthest from 0 within 32 bits
 };
 
 }  // namespace

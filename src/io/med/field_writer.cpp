@@ -165,7 +165,8 @@ class FieldWriter {
     });
   }
 
-  /// Returns the name of the profile for these rows, made from `old` or the field; kNoProfile for all items.
+  /// Returns the name of the profile for these rows, made from `old`. If `old` is kNoProfile: kNoProfile if
+  /// all items have rows, else a name made from the field's.
   std::string profile_for(const std::string& old, const Rows& rows, const Piece& piece) {
     if (old != kNoProfile) return profiles_.name_for(old, rows.places);
     if (rows.rows.size() == items_of(piece.type)) return old;

@@ -103,11 +103,11 @@ Range range_in(const Ranges& ranges, const GeometryType* type);
 
 /// Data of a file beyond the mesh.
 struct MedLayout final : FormatMetadata {
-  std::shared_ptr<const std::string> file;           ///< bytes without the values that depend on the mesh
+  std::shared_ptr<const std::string> file;           ///< bytes of the file without the mesh's values
   std::string mesh;                                  ///< name of the mesh
   std::string step;                                  ///< name of the group of the only step
-  bool is_made = false;                              ///< made by `new_layout`
-  bool in_mesh_order = false;                        ///< nodes of cells are in the order of a Mesh
+  bool is_made = false;                              ///< whether `new_layout` made the layout
+  bool in_mesh_order = false;                        ///< whether the file has cells' nodes in Mesh's order
   int axes = 3;                                      ///< coordinates of a point
   std::map<const GeometryType*, Items> items;        ///< by type; null: vertices
   std::string families_array = std::string(kLabel);  ///< mesh's array with the family numbers
@@ -152,7 +152,7 @@ struct Reading {
   /// Throws InputError for a fault at a group or a dataset.
   [[noreturn]] void fail(const std::string& path, const std::string& what,
                          const std::string& remedy = "the file may be damaged") const;
-  /// Adds an array, its rows sorted by vertex or cell, under an unused name. Returns that name.
+  /// Sorts an array's rows by vertex or cell, adds the array under an unused name and returns this name.
   std::string add_array(DataArray array);
   /// Marks a dataset not to keep verbatim.
   void take(const std::string& path) { taken.insert(hdf5::normal_path(path)); }
@@ -184,7 +184,7 @@ struct Writing {
 
   /// Writes numbers of `rows` items to a dataset and sets its attributes.
   void put(const std::string& path, const Values& values, Index rows);
-  /// Writes whole numbers with 32 bits, or with 64 bits if the dataset already has these or a number needs
+  /// Writes whole numbers with 32 bits, or with 64 bits if the dataset already has 64 bits or a number needs
   /// them.
   void put_integers(const std::string& path, std::vector<std::int64_t> values);
 };
@@ -193,7 +193,7 @@ struct Writing {
 using Numbers = std::initializer_list<std::pair<const char*, std::int64_t>>;
 void set_attributes(hdf5::File& file, const std::string& path, Numbers numbers);
 
-/// Writes new families and returns the number for each vertex or cell; empty if all are 0.
+/// Writes new families; returns the family number of each vertex or cell, empty if all are 0.
 std::vector<std::int64_t> write_families(Writing& writing, Association association);
 void write_fields(Writing& writing);
 

@@ -30,7 +30,7 @@ constexpr std::array kWedge{0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13, 17
 constexpr std::array kHexahedron{0,  3,  2,  1,  4,  7,  6,  5,  11, 10, 9,  8,  15, 14,
                                  13, 12, 16, 19, 18, 17, 24, 20, 23, 21, 22, 25, 26};
 
-/// Returns the first type that `is_wanted`, null if there is none.
+/// Returns the first type for which `is_wanted` returns true, null if there is none.
 template <class IsWanted>
 const GeometryType* first_type(const IsWanted& is_wanted) {
   const auto* const found = std::find_if(kGeometryTypes.begin(), kGeometryTypes.end(), is_wanted);

@@ -105,9 +105,9 @@ inline constexpr std::array kReferenceKinds{
     ReferenceKind{"VertexOnSupportTetrahedron", Form::table, "v"},
     ReferenceKind{"VertexOnSupportPentahedron", Form::table, "v"},
     ReferenceKind{"VertexOnSupportHexahedron", Form::table, "v"},
-    // BAMG's: 3, a triangle of the domain, orientation, reference
+    // BAMG's; columns: 3, a triangle of the domain, orientation, reference
     ReferenceKind{"SubDomainFromMesh", Form::rows, ".t.."},
-    // in a geometry: 2, an edge, …: the columns of the next line
+    // in a geometry, with the columns of the next line
     ReferenceKind{"SubDomain", Form::rows, ".t.."},
     ReferenceKind{"SubDomainFromGeom", Form::rows, ".e.."},
     ReferenceKind{"TangentAtEdges", Form::rows, "e..."},
@@ -121,7 +121,7 @@ inline constexpr std::array kReferenceKinds{
     ReferenceKind{"PeriodicEdges", Form::rows, "ee"},
     ReferenceKind{"PeriodicTriangles", Form::rows, "tt"},
     ReferenceKind{"PeriodicQuadrilaterals", Form::rows, "qq"},
-    // lines of a cell, the position of a vertex in this cell, and a tangent or normal
+    // columns: a cell, the position of a vertex in this cell, a tangent or normal
     ReferenceKind{"TangentAtEdgeVertices", Form::rows, "e.."},
     ReferenceKind{"NormalAtTriangleVertices", Form::rows, "t.."},
     ReferenceKind{"NormalAtQuadrilateralVertices", Form::rows, "q.."},
@@ -153,10 +153,10 @@ struct MeditMetadata final : FormatMetadata {
   std::int64_t version = 2;
   std::string comments_before;
   std::string after_end;
-  std::vector<VerbatimSection> sections;  ///< sections that do not depend on the order
+  std::vector<VerbatimSection> sections;  ///< sections that do not depend on the mesh's order
   std::vector<Rows> rows;
   std::vector<std::size_t> empty_sections;  ///< kinds of cells whose section is empty
-  /// For kinds whose node order the file gives: at index k, the position in the file of VTK's node k.
+  /// Node orders that the file gives, by kind: at index k, the position in the file of VTK's node k.
   std::map<std::size_t, std::vector<int>> places;
 
   [[nodiscard]] std::vector<std::string> contents() const override;

@@ -282,7 +282,7 @@ class Reader {
     }
   }
 
-  /// Returns the number of words in the next word's line; 1 at the end of the file.
+  /// Returns the number of words from the next word to the line's end; 1 at the end of the file.
   int words_of_line() { return in_.at_end() ? 1 : in_.words_in_line(); }
 
   void read_pending() {
@@ -305,7 +305,8 @@ class Reader {
     last_keyword_ = keyword;
   }
 
-  /// Returns the first vertex or cell of a target, and their number. Fails if cells are `needed` but absent.
+  /// Returns the first vertex or cell of a target, and the number of all of them. Fails if `needed` > 0 and
+  /// there are no such cells.
   std::pair<Index, Index> range_of(const Target& target, Index needed) {
     if (!target) return {0, mesh_.vertex_count()};
     const std::size_t kind = counted_kind(*target, counts_);
@@ -362,7 +363,7 @@ class Reader {
     return kind.columns;
   }
 
-  /// Reads numbers for each vertex.
+  /// Reads the mesh sizes at all vertices.
   void read_sizes(const SizeKind& kind) {
     if (!has_vertices_) in_.fail(last_keyword_ + " comes before Vertices", "put it after them");
     const std::string what = what_number();

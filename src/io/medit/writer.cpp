@@ -63,7 +63,7 @@ struct WriteContext {
 };
 
 /// Returns the version to write: 4 if a reference needs 64 bits, else the version of the file that the mesh
-/// came from; 2 if there is none.
+/// came from (2 if that file is not Medit's).
 std::int64_t version(const WriteContext& from) {
   const std::int64_t wanted = from.own ? from.own->version : 2;
   return fit_32_bits(from.vertex_labels.values) && fit_32_bits(from.cell_labels.values) ? wanted : 4;
@@ -111,8 +111,8 @@ void write_ordering(OutputFile& out, std::size_t kind) {
 
 // ---- sections that refer to vertices or cells
 
-/// Returns the position of a vertex or cell among the items that a section refers to; −1 if it is not such an
-/// item.
+/// Returns the position of a vertex or cell among the items that a section refers to; −1 if it is not among
+/// them.
 Index position_in(const WriteContext& from, const Target& target, Index item) {
   if (!target) return item;
   const std::size_t kind = counted_kind(*target, from.layout.counts);
@@ -180,7 +180,8 @@ void write_section_rows(OutputFile& out, const WriteContext& from, const MeditMe
   }
 }
 
-/// Writes an array on all vertices as the section of the same name; returns false if the array fits none.
+/// Writes an array on all vertices as the section of the same name; returns false if the array fits no
+/// section.
 bool write_sizes(OutputFile& out, const DataArray& array) {
   const bool known = std::any_of(kSizeKinds.begin(), kSizeKinds.end(), [&](const SizeKind& kind) {
     return kind.keyword == array.name && kind.components == array.components;
@@ -196,8 +197,8 @@ bool write_sizes(OutputFile& out, const DataArray& array) {
   return true;
 }
 
-/// Writes an array as the section of the same name if the mesh came from this format and the array fits;
-/// else notes it.
+/// Writes an array as the section of the same name if the mesh came from this format and the array fits; else
+/// notes that it is not written.
 void write_array(OutputFile& out, const WriteContext& from, const DataArray& array, Notes& notes) {
   const ReferenceKind* kind = nullptr;
   const bool numbers = !are_texts(array.values);

@@ -23,7 +23,7 @@ constexpr std::size_t kDataEnd = 72;  // the name of the next line follows this 
 constexpr std::size_t kSmallFields = 8;
 constexpr std::size_t kLargeFields = 4;
 
-/// Returns the end of the line that begins there, its line end included.
+/// Returns the position after the line that begins at `begin` and after its line end.
 std::size_t end_of_line(std::string_view text, std::size_t begin) {
   constexpr std::size_t kUsual = 128;  // limits the search: a text may have no line feeds
   const std::string_view ahead = text.substr(begin, kUsual);
@@ -106,8 +106,8 @@ class Splitter {
     }
   }
 
-  /// Compares the name of a line with the name at the end of the line before. Nastran ignores the first
-  /// column of that earlier name, whether the column holds a mark or a letter.
+  /// Sets `fault` if the name of a line differs from the name at the end of the line before. Nastran ignores
+  /// the first column of the latter name, whether it holds a mark or a letter.
   void check_name(std::string_view name) {
     const std::string_view own = line_name(name);
     if (own.empty() || line_name(next_name_).empty() || own == line_name(next_name_)) return;
@@ -332,7 +332,7 @@ std::string shortest(double value) {
 RealText real_text(double value) {
   std::string text = shortest(value);
   double rounded = value;
-  // 17 significant digits give the value itself, whose text is too long
+  // from 16 significant digits down: 17 would give the same long text
   for (int digits = 15; digits > 0 && text.size() > kLargeWidth; --digits) {
     std::array<char, 40> buffer{};
     char* const begin = buffer.data();

@@ -42,8 +42,9 @@ class Cards {
   bool is_orphan_ = false;
 };
 
-/// Divides `whole`, lines of `text`, into parts of whole cards, of at least `bytes` but for the last. Parts
-/// after the first begin with a letter, thus with a card. O(parts) if most lines begin with a letter.
+/// Divides `whole`, lines of `text`, into parts of whole cards. All parts but the last have at least `bytes`
+/// bytes; all but the first begin with a letter, thus with a card. O(parts) if most lines begin with a
+/// letter.
 std::vector<Piece> parts_of_cards(std::string_view text, Piece whole, std::size_t bytes);
 
 /// A field of a card.
@@ -77,7 +78,7 @@ std::string name_of(const CardFields& card);
 /// Returns a field as an integer; nullopt if the field is not an integer.
 std::optional<std::int64_t> integer_of(std::string_view field);
 
-/// Returns the number of a node, element or property in a field, above 0; 0 if the field holds no such
+/// Returns the number, above 0, of a node, element or property in a field; 0 if the field holds no such
 /// number.
 std::int64_t number_of(std::string_view field);
 

@@ -42,8 +42,7 @@ bool has_begin_bulk(std::string_view text) {
   return false;
 }
 
-/// Returns whether a line of bulk data surely stays unchanged, whatever precedes it; may be false for such a
-/// line, too.
+/// Returns true only if a line of bulk data stays unchanged whatever precedes it; may return false even then.
 bool is_plain(std::string_view line) {
   if (line.ends_with('\r')) line.remove_suffix(1);
   if (line.find('\t') != std::string_view::npos || line.find('\r') != std::string_view::npos) return false;
@@ -98,8 +97,8 @@ void DeckText::read() {
   }
 }
 
-/// Takes the lines before the next one that is long or not plain, faster than `take_line`; returns false if
-/// there are none. Most lines of a mesh are short and plain.
+/// Takes the lines up to the next line that is long or not plain, faster than `take_line`; returns false if
+/// it takes none. Most lines of a mesh are short and plain.
 bool DeckText::take_plain_lines() {
   const std::string_view rest = lines_.rest();
   std::size_t bytes = 0;

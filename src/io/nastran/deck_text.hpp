@@ -13,8 +13,8 @@
 
 namespace meshorder::nastran {
 
-/// Reads a file of Nastran as one text, with included files in place, and finds the bulk data in it. Tabs in
-/// lines of bulk data without commas become blanks up to the next multiple of 8 columns.
+/// Reads a file of Nastran as one text, with included files in place, and finds the bulk data in it. In lines
+/// of bulk data that have no comma, tabs become blanks up to the next multiple of 8 columns.
 class DeckText {
  public:
   explicit DeckText(const FilePath& path);
@@ -30,7 +30,7 @@ class DeckText {
   [[nodiscard]] const std::string& line_end() const { return lines_.line_end(); }
   [[nodiscard]] const std::vector<std::string>& included() const { return lines_.included(); }
 
-  /// Throws InputError at the line of that byte of the text.
+  /// Throws InputError that names the file and line of that byte of the text.
   [[noreturn]] void fail(std::size_t byte, const std::string& what, const std::string& remedy) const;
   /// Returns the file and line of that byte. O(bytes since the byte of the last call) time; O(bytes of the
   /// file) if the last call had a later byte.

@@ -367,7 +367,7 @@ class BulkWriter {
     }
   }
 
-  /// Keeps the error that is being handled, unless an earlier item has one.
+  /// Keeps the error that is being handled, unless an item of a lower index has one.
   void keep_error(Index item) {
     const std::scoped_lock lock(mutex_);
     if (item >= first_with_error_) return;

@@ -22,8 +22,8 @@ enum class Extra : std::uint8_t {
 struct ElementType {
   std::string_view name;
   Shape shape;
-  int corners;               ///< nodes that every element has
-  int most;                  ///< nodes including those of edges, faces and the interior
+  int corners;               ///< number of nodes that every element has
+  int most;                  ///< greatest number of nodes, with those of edges, faces and the interior
   bool has_property = true;  ///< whether field 2 is the number of a property
   Extra extra = Extra::none;
 
@@ -43,7 +43,7 @@ const ElementType* element_type(std::string_view name);
 /// Returns whether elements of a type may end after their first `nodes` nodes.
 bool has_size(const ElementType& type, int nodes);
 
-/// Returns the card for such cells of a mesh of another format; an empty text if there is none.
+/// Returns the name of the card for such cells of a mesh of another format; an empty text if there is none.
 std::string_view card_of(Shape shape, int nodes);
 
 /// Returns the place of the k-th vertex of a cell among the nodes of its element. Nastran lists the nodes on

@@ -25,7 +25,7 @@ constexpr std::int64_t kLargestNumber = 99'999'999;
 struct ElementCard {
   Piece place;
   const ElementType* type = nullptr;
-  int nodes = 0;  ///< vertices of the cell: all nodes of the card, or the corners if other nodes are missing
+  int nodes = 0;  ///< vertices of the cell: nodes of the card, or only its corners if others are missing
 };
 
 /// A file, and the places of nodes and elements in it.

@@ -179,7 +179,7 @@ class DeckReader {
   }
 
   void add_points(const NumberRange& range) {
-    constexpr std::int64_t kMost = 10'000'000;  // numbers in one range
+    constexpr std::int64_t kMost = 10'000'000;  // most numbers in one range
     if (range.to - range.from > kMost) fail("a range has more than ten million points", "correct it");
     const std::int64_t count = std::max<std::int64_t>((range.to - range.from) / range.step + 1, 0);
     claim_memory(static_cast<std::uint64_t>(count) * sizeof(std::int64_t), "a range of points");
@@ -315,7 +315,7 @@ class DeckReader {
     }
   }
 
-  /// Finds nodes or elements that case control names: in sets, curves, and grid points of commands.
+  /// Finds nodes or elements that case control names: in sets, curves, and commands with a grid point.
   template <class Add>
   void find_in_control(std::string_view control, const Add& add) const {
     bool in_set = false;
@@ -386,7 +386,7 @@ class DeckReader {
   CoordinateSystems systems_{file_};
   std::int64_t default_system_ = 0;
   std::vector<std::int64_t> system_of_;              // system of each node
-  bool has_systems_ = false;                         // whether any of these is not the basic system
+  bool has_systems_ = false;                         // whether any node has a system other than the basic one
   std::vector<LaterNode<std::size_t>> later_nodes_;  // place: the byte of the element
   std::vector<std::int64_t> labels_;
   std::vector<Index> labelled_;

@@ -14,10 +14,11 @@
 namespace meshorder::nastran {
 namespace {
 
-/// Cards with the same fields, with one letter for each field after the name: a node (n), a node if the next
-/// field is blank (G), an element (e), the number of an element that is not a cell (x), other (-). Letters in
-/// parentheses repeat to the end of the card. N, E and S begin a list of nodes, elements and points that are
-/// not nodes. From a "." on, all fields must be blank: some programs give a second element there.
+/// Cards with the same fields. `fields` has one letter for each field after the name: a node (n), a node if
+/// the next field is blank (G), an element (e), the number of an element that is not a cell (x), other (-).
+/// Letters in parentheses repeat to the end of the card. N, E and S begin a list: of nodes, of elements, of
+/// points that are not nodes. From a "." on, all fields must be blank: some programs give a second element
+/// there.
 struct CardPattern {
   std::string_view fields;
   std::vector<std::string_view> names;

@@ -47,8 +47,8 @@ struct NumberRange {
 /// Returns the numbers and ranges of the list of a card; nullopt if the list holds anything else.
 std::optional<std::vector<NumberRange>> ranges_of(const CardFields& card, std::size_t list);
 
-/// Returns those of `others`, which ascend, that are in the ranges. Appends to `found` the position of each
-/// item in the ranges, once.
+/// Returns the numbers in `others`, which must ascend, that are in the ranges. Appends to `found` the
+/// positions of the items in the ranges, each once.
 std::vector<std::int64_t> numbers_in_list(const std::vector<NumberRange>& ranges, const IdMap& items,
                                           const std::vector<std::int64_t>& others, std::vector<Index>& found);
 

@@ -83,7 +83,7 @@ Point CoordinateSystems::in_basic(std::int64_t system, const Point& point, std::
   Point along = point;
   if (found->second.kind == Kind::cylindrical) along = in_frame_directions(point[0], point[1], point[2]);
   if (found->second.kind == Kind::spherical) {
-    const Point meridian = in_frame_directions(point[0], point[1], 0);  // its x is along the axis
+    const Point meridian = in_frame_directions(point[0], point[1], 0);  // component 0 is along the z-axis
     along = in_frame_directions(meridian[1], point[2], meridian[0]);
   }
   Point result = frame.origin;

@@ -51,7 +51,7 @@ class BoundaryReader {
     return result;
   }
 
-  /// Takes the number of patches, which may be left out, and the parenthesis after it.
+  /// Takes the number of patches, which the file may omit, and the opening parenthesis.
   void begin() {
     const std::string first = word();
     if (first == "(" || word() == "(") return;

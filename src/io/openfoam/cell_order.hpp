@@ -10,11 +10,11 @@
 
 namespace meshorder::openfoam {
 
-/// Name of the file from which renumberMesh's method `manual` takes an order. It lies beside the folder
+/// Name of the file from which renumberMesh's method `manual` reads an order. The file lies beside the folder
 /// `polyMesh`.
 inline constexpr std::string_view kCellOrder = "cellOrder";
 
-/// Writes the old number of each cell in the new order. The caller commits the file.
+/// Writes the old numbers of the cells, in the new order of the cells. The caller commits the file.
 void write_cell_order(const Permutation& cells, OutputFile& file);
 
 /// The entries of renumberMeshDict that take the order from `kCellOrder`. OpenFOAM 1912 refuses a dictionary

@@ -15,8 +15,8 @@
 namespace meshorder::openfoam {
 namespace {
 
-/// Most entries of a list of one repeated value: these entries take no bytes in the file, and a mesh whose
-/// faces all have the same cell is small.
+/// Greatest size of a list of one repeated value, whose entries take no bytes in the file. A mesh whose faces
+/// all have the same cell is small.
 constexpr std::int64_t kMostAlike = 1 << 20;
 
 constexpr std::string_view kMarks = "(){};";
@@ -32,7 +32,7 @@ bool is_no_text(char c) { return !is_space(c) && (c < ' ' || c > '~'); }
 
 FilePath compressed(const FilePath& path) { return path.beside(path.path().filename().string() + ".gz"); }
 
-/// Returns the file of that path if it exists, else its compressed form.
+/// Returns the compressed form of a file if only this form exists, else the file itself.
 FilePath existing(const FilePath& path) {
   return path.exists() || !compressed(path).exists() ? path : compressed(path);
 }

@@ -90,9 +90,9 @@ class FoamFile {
   T binary(std::string_view what);
   std::int64_t label(std::string_view what);
   double scalar(std::string_view what);
-  /// Takes the size of a list whose entries take at least `bytes_each` bytes each.
+  /// Reads the size of a list whose entries have at least `bytes_each` bytes each.
   std::int64_t size(std::string_view what, std::int64_t bytes_each);
-  /// Returns the last label read; throws InputError unless `least` ≤ `label` < `end`.
+  /// Returns `label`, which was just read; throws InputError unless `least` ≤ `label` < `end`.
   Index checked(std::int64_t label, std::string_view what, std::int64_t least, std::int64_t end);
   Point point();
 

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 /// The cells on both sides of the faces.
 struct Sides {
   std::vector<Index> owner;      ///< owner of every face
-  std::vector<Index> neighbour;  ///< neighbour of each internal face; these come first
+  std::vector<Index> neighbour;  ///< neighbour of each internal face; internal faces come first
   Index cells = 0;
 };
 

@@ -81,7 +81,7 @@ std::string all_of(const Read& read, const std::string& name) {
   return bytes;
 }
 
-/// Returns the first bytes of a file, at most `most`; of a pipe, all bytes.
+/// Returns the first bytes of a file, at most `most`, or all bytes of a pipe.
 std::string read_from_disk(const FilePath& path, std::uint64_t most) {
   InputFile file = path.open();
   // pipes and files of /proc report the size 0

@@ -46,7 +46,7 @@ class FilePath {
   // NOLINTEND(google-explicit-constructor)
   /// A file in a store, which must outlive this object.
   FilePath(std::filesystem::path path, FileStore& store) : path_(std::move(path)), store_(&store) {}
-  /// A file on disk. If it is written, the set puts it in place; the set must outlive this object.
+  /// A file on disk. If it is written, `set` puts it in place; `set` must outlive this object.
   FilePath(FilePath path, OutputSet& set)
       : path_(std::move(path.path_)), folder_(std::move(path.folder_)), set_(&set) {}
 
@@ -72,7 +72,7 @@ class FilePath {
   /// Returns whether the file exists and is a regular file, not a folder or a device.
   [[nodiscard]] bool is_file() const;
   [[nodiscard]] bool is_empty() const;
-  /// Returns whether two paths lead to one file.
+  /// Returns whether both paths lead to the same file.
   [[nodiscard]] bool is_same(const FilePath& other) const;
   /// Opens a file on disk. Throws InputError as `InputFile` does.
   [[nodiscard]] InputFile open() const;

@@ -12,11 +12,11 @@
 
 namespace meshorder {
 
-/// Marks, while it lives, a folder that this process has locked by other means. `FolderLocks` skips such
-/// folders: otherwise the process would wait for itself.
+/// Marks a folder that this process has locked by other means, until the destructor. `FolderLocks` skips such
+/// folders; otherwise the process would wait for itself.
 class HeldFolder {
  public:
-  /// @param descriptor  of the open folder
+  /// @param descriptor  a descriptor of the open folder
   explicit HeldFolder(int descriptor);
   ~HeldFolder();
   HeldFolder(const HeldFolder&) = delete;

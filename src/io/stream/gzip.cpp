@@ -27,7 +27,7 @@ bool is_gzip(const std::string& bytes) { return bytes.starts_with("\x1f\x8b"); }
 #ifdef MESHORDER_HAS_ZLIB
 
 constexpr std::size_t kInflateStep = std::size_t{1} << 20;
-/// Bytes of a block: so many that the C library returns a freed block to the system.
+/// Size of a block in bytes: large enough that the C library returns freed blocks to the system.
 constexpr std::size_t kInflateBlock = 33 * kInflateStep;
 
 /// Bytes in blocks, which do not move when more bytes are added.
@@ -57,7 +57,7 @@ class InflatedBlocks {
   std::size_t used_ = 0;
 };
 
-/// A running decompression. The bytes may hold several members, as `cat a.gz b.gz` writes them.
+/// A running decompression. The bytes may hold several gzip members, as `cat a.gz b.gz` writes them.
 class Inflation {
  public:
   Inflation(const std::string& bytes, const std::string& file) : bytes_(bytes), file_(file) {
@@ -107,7 +107,7 @@ class Inflation {
  private:
   [[nodiscard]] std::size_t bytes_left() const { return bytes_.size() - fed_ + stream_.avail_in; }
 
-  /// Gives zlib the next bytes, at most 2³¹ − 1, if it has used the last ones.
+  /// If zlib has used all bytes that it got, gives it the next ones, at most 2³¹ − 1.
   void feed() {
     if (stream_.avail_in > 0) return;
     const std::size_t size =

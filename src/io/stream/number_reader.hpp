@@ -33,7 +33,7 @@ struct NumberReader {
 
   /// Reads a count of items that take at least `text_bytes` or `binary_bytes` each (see Scanner::count).
   Index count(std::string_view what, std::int64_t text_bytes, std::int64_t binary_bytes);
-  /// Checks a count that was read already. `bytes`: least bytes of an item in the file's encoding.
+  /// Checks a count that was read already. `bytes`: least number of bytes that an item takes in the file.
   [[nodiscard]] Index checked_count(std::int64_t number, std::string_view what, std::int64_t bytes) const;
 
   // ---- text, also in binary files

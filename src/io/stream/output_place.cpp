@@ -54,7 +54,7 @@ void refuse_link_of_others(const fs::path& link) {
 }
 
 /// Throws InputError if a part of the path that this program named is a symbolic link: another user may have
-/// put the link there to have some other file replaced.
+/// put the link there to make this program replace another file.
 void refuse_links_in_derived(const FilePath& file) {
   if (!file.folder()) return;
   fs::path path = file.path();

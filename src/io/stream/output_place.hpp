@@ -14,7 +14,7 @@ struct OutputPlace {
   bool exists = false;
   bool is_through = false;   ///< a device, a pipe or an open file of this process: cannot be replaced
   int own_descriptor = -1;   ///< of an open file of this process, such as /dev/stdout; else −1
-  unsigned other_names = 0;  ///< hard links besides this one
+  unsigned other_names = 0;  ///< hard links besides this path
 };
 
 /// Returns the folder of a path, "." for a plain name.

@@ -29,9 +29,9 @@ class OutputSet {
   /// Makes `commit` remove a file of an earlier run if it exists and is not part of this set.
   void remove(FilePath path) { removals_.push_back(std::move(path)); }
 
-  /// Makes `commit` first remove an old file without which nobody can read the others, for example one that
-  /// names them. If the process is then killed, nobody reads a mixture of old and new files. For outputs
-  /// without a mark (see `put_in_place`). Add the new version of that file last.
+  /// Makes `commit` first remove an old file without which nobody can read the other old files, for example a
+  /// file that names them. If the process is then killed, nobody reads a mixture of old and new files. For
+  /// outputs without a mark (see `put_in_place`). Add the new version of that file last.
   void remove_first(FilePath path) { removals_first_.push_back(std::move(path)); }
 
   /// Puts all files in place. Throws InputError as `put_in_place`.
@@ -58,8 +58,8 @@ struct FinishedFile {
 ///
 /// 1. each file gets the attributes of the file that it replaces, and is synced;
 /// 2. the folders are locked (`flock`): sets of two processes do not mix;
-/// 3. `removed_first` are moved into scratch folders; each file is renamed over its target, in this order;
-///    `removed` are moved away;
+/// 3. in this order: `removed_first` are moved into scratch folders, each new file is renamed over its
+///    target, and `removed` are moved into scratch folders;
 /// 4. the folders are synced and unlocked.
 ///
 /// Until step 3 the old files are in place. An error in step 3 or 4 puts them back. A process that is killed
@@ -79,8 +79,8 @@ using PutInPlace = std::function<std::vector<std::string>(std::span<const Finish
                                                           std::span<const FilePath> removed_first,
                                                           std::span<const FilePath> removed)>;
 
-/// For outputs whose scratch folders are elsewhere (`keep_scratches_in`), makes `put_in_place` call `other`,
-/// which asks another process. Call it while there is one thread.
+/// Makes `put_in_place` call `other`, which asks another process, for outputs whose scratch folders are
+/// elsewhere (`keep_scratches_in`). Call it while there is one thread.
 void put_in_place_by(PutInPlace other);
 
 }  // namespace meshorder

@@ -19,12 +19,12 @@ namespace meshorder {
 /// for data that these files announce but do not hold. Lists the folders whose files the mesh may name.
 ///
 /// All claims of a mesh together must not exceed a limit: `memory`, else the limit given to the process, else
-/// 256 MiB plus 100 times the size of the files, but at most `memory_limit()`. Without a ReadScope, each
-/// single claim may take `memory_limit()`.
+/// 256 MiB plus 100 times the total size of the files, but at most `memory_limit()`. Without a ReadScope,
+/// each single claim may take `memory_limit()`.
 class ReadScope {
  public:
   /// @param file             the mesh, for messages; must outlive this object
-  /// @param memory           the limit on claims in bytes; if empty, as above
+  /// @param memory           the limit on claims in bytes; if empty, the default above
   /// @param include_folders  further folders for files that the mesh names, besides its own folder
   explicit ReadScope(const FilePath& file, std::optional<std::uint64_t> memory = {},
                      std::vector<std::filesystem::path> include_folders = {});
@@ -61,8 +61,8 @@ void count_file(const FilePath& file, std::uint64_t bytes);
 inline constexpr std::uint64_t kCopiesOfClaim = 4;
 
 /// Claims memory for data that a file announces but does not hold. Call it before the allocation. The bytes
-/// count `kCopiesOfClaim` times. Returns an empty text; if all claims of the mesh together would exceed its
-/// limit, claims nothing and returns the fault, "WHAT would take 64 GiB …".
+/// count `kCopiesOfClaim` times. If all claims of the mesh together would exceed the limit, claims nothing
+/// and returns the fault, "WHAT would take 64 GiB …"; else returns an empty text.
 [[nodiscard]] std::string refused_claim(std::uint64_t bytes, std::string_view what);
 
 /// As `refused_claim`, for memory that a library needs only while it reads: the bytes count once, and later

@@ -27,7 +27,7 @@ std::size_t words_in(std::string_view text) {
   constexpr std::uint64_t kOnes = 0x0101010101010101U;
   constexpr std::uint64_t kHighest = kOnes * 0x80U;
   std::size_t words = 0;
-  std::uint64_t before = 0;  // not 0 if the byte before belongs to a word
+  std::uint64_t before = 0;  // not 0 if the previous byte belongs to a word
   std::size_t at = 0;
   if constexpr (std::endian::native == std::endian::little) {
     for (; at + 8 <= text.size(); at += 8) {
@@ -87,8 +87,8 @@ std::vector<std::size_t> first_words(const std::vector<std::string_view>& parts)
   return first;
 }
 
-/// Reads as many numbers as `values` holds. If only separators follow these numbers, the result's `bytes` is
-/// the size of the part.
+/// Reads numbers until `values` is full or a word is no number. If only separators follow these numbers, the
+/// result's `bytes` is the size of the part.
 template <class Number>
 RegularNumbers read_part(std::string_view part, std::span<Number> values) {
   RegularNumbers read;
@@ -116,8 +116,8 @@ RegularNumbers read_part(std::string_view part, std::span<Number> values) {
   return read;
 }
 
-/// Reads `count` numbers of a text. `read_one(part, first, count)` reads the `count` numbers of a part; the
-/// first of them is number `first` of the text.
+/// Reads up to `count` numbers of a text. `read_one(part, first, n)` reads the n numbers of a part; the first
+/// of them is number `first` of the text.
 RegularNumbers read_parts(std::string_view text, std::size_t count, std::size_t part_bytes,
                           const std::function<RegularNumbers(std::string_view part, std::size_t first,
                                                              std::size_t count)>& read_one) {

@@ -34,7 +34,7 @@ struct TextPart {
 struct Records {
   const std::function<bool(Scanner&, Index)>& read;
   Index lines = 1;            ///< number of lines of each record
-  bool may_be_blank = false;  ///< all lines belong to records, not only lines with words
+  bool may_be_blank = false;  ///< lines without words belong to records too
 
   /// Returns how many records begin in the first `record_lines` lines of records.
   [[nodiscard]] std::int64_t begin_in(std::int64_t record_lines) const {

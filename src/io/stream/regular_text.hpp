@@ -33,7 +33,7 @@ RegularNumbers read_numbers_of_type(std::string_view text, std::span<Number> val
 /// The text is divided at blanks and line ends into parts. The words of each part are counted, which gives
 /// the index of the next part's first number.
 ///
-/// @param values      receives the numbers, as many as fit; entries after those read may be overwritten
+/// @param values      receives the numbers, as many as fit; entries after these numbers may be overwritten
 /// @param part_bytes  least size of a part, > 0
 /// @note O(bytes of the numbers); memory: a few numbers for each part. Reads nothing if `Number` is a type
 ///       that is rare in files.
@@ -47,8 +47,8 @@ RegularNumbers read_regular_numbers(std::string_view text, std::span<Number> val
     return {};
 }
 
-/// As above, from a scanner without comments. Moves the scanner after the last number. Returns how many
-/// numbers it read.
+/// As the function above, from the position of a scanner without comments. Moves the scanner after the last
+/// number. Returns how many numbers it read.
 template <class Number>
 std::size_t read_regular_numbers(Scanner& in, std::span<Number> values) {
   const RegularNumbers read =
@@ -67,9 +67,9 @@ bool has_any_of(std::string_view text, std::string_view bytes);
 /// Counts the words of a text on all threads. Every byte ≤ 0x20 separates words.
 std::size_t count_words(std::string_view text);
 
-/// Reads the next records of a text on all threads, as far as they are regular. Each record has its own
-/// lines. Returns how many records it read; the scanner is then after the last of them. The caller reads the
-/// other records one by one: it reports their errors and accepts what is unusual but valid. So errors and
+/// Reads the next records of a text on all threads, up to the first that is not regular. Each record has its
+/// own lines. Returns how many records it read; the scanner is then after the last of them. The caller reads
+/// the other records one by one, reports their errors and accepts unusual but valid records. So errors and
 /// results are those of a reader that reads all records one by one.
 ///
 /// The text is divided at line ends into parts; a record belongs to the part in which it begins. The lines
@@ -107,7 +107,7 @@ void read_records(Scanner& in, Index count, const Read& read) {
 }
 
 /// Reads records as `read_regular_records` does. A record is regular only if it begins with a number that is
-/// one more than the number of the record before. Reads nothing if one of `count` such numbers would be
+/// one more than the number of the previous record. Reads nothing if one of `count` such numbers would be
 /// outside of `least` … `most`. Adds the numbers to `numbering`, which must be empty.
 template <class Read>
 Index read_numbered_records(Scanner& in, Index count, IdMap& numbering, const Read& read,

@@ -26,18 +26,19 @@ namespace meshorder {
 /// extends from the comment character, if there is one, to the end of its line.
 class Scanner {
  public:
-  /// Reads the whole file. Throws Error for a folder, an unreadable or an empty file.
+  /// Reads the whole file. Throws as `FilePath::read`, and InputError if the text is empty or UTF-16.
   explicit Scanner(const FilePath& file, char comment = '\0');
 
   /// Returns a scanner of the same text at another place.
   ///
   /// @param byte  0 … size of the text
-  /// @param line  of that byte
+  /// @param line  the line of that byte
   [[nodiscard]] Scanner at(std::int64_t byte, std::int64_t line) const;
   /// Returns a scanner of all bytes of the file. Other scanners skip the byte order mark of UTF-8; in a
   /// binary file its three bytes may be data.
   [[nodiscard]] Scanner of_all_bytes() const;
-  /// Moves to the position of another scanner of the same text, which may have skipped comments. O(1).
+  /// Moves to the position of another scanner of the same text; keeps the larger `last_comment` of both.
+  /// O(1).
   void move_to(const Scanner& other);
 
   // ---- position
@@ -47,7 +48,7 @@ class Scanner {
   [[nodiscard]] std::int64_t bytes_left() const noexcept {
     return static_cast<std::int64_t>(text_.size() - position_);
   }
-  /// Returns the whole file, for formats that look ahead.
+  /// Returns the whole text, for formats that look ahead.
   [[nodiscard]] std::string_view all() const noexcept { return text_; }
   /// Returns the character that begins a comment, \0 for none.
   [[nodiscard]] char comment() const noexcept { return comment_; }
@@ -82,13 +83,12 @@ class Scanner {
   /// not take it. Reads each byte once; `word` and a parser would read each byte twice.
   template <class T>
   bool take_number(T& value);
-  /// As `take_number`, for a finite real number. Takes a number that is not finite as well, but returns
-  /// false.
+  /// As `take_number`. Also takes a number that is not finite, but then returns false.
   bool take_finite(double& value) { return take_number(value) && std::isfinite(value); }
   /// Takes the next word as an integer of type T.
   template <class T>
   T integer(std::string_view what);
-  /// Takes the next word as a position from 1 to `last`; returns it counted from 0.
+  /// Takes the next word as a position from 1 to `last`; returns the position counted from 0.
   Index position(std::string_view what, Index last) {
     const auto number = integer<std::int64_t>(what);
     if (number < 1 || number > last) fail_position(what, number, last);

@@ -68,7 +68,7 @@ void forget(int slot) noexcept {
 
 // ---- folders
 
-/// Maps a folder of outputs to the place of their scratch folders, if that is elsewhere.
+/// Maps a folder of outputs to the parent of its scratch folders, if `keep_scratches_in` set one.
 std::map<fs::path, fs::path>& other_places() {
   static std::map<fs::path, fs::path> places;
   return places;

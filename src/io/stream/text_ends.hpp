@@ -22,7 +22,7 @@ std::string comments_before(std::string_view text, char comment);
 /// Returns the comments at the end of a text, verbatim: all lines from the first comment after the data.
 std::string comments_after(std::string_view text, char comment);
 
-/// Notes a missing final newline: the last number may be truncated.
+/// Adds a note if the last line has no newline and no comment: its last number may be truncated.
 void note_missing_line_end(const Scanner& scanner, char comment, Notes& notes);
 
 }  // namespace meshorder

@@ -147,7 +147,7 @@ class Su2Reader {
     }
   }
 
-  /// Reads lines, each of a marker's name, a point and the point's place in the box.
+  /// Reads lines that each have a marker's name, a point and its place in the box.
   void read_surface_points() {
     if (!has_points_) in_.fail(keyword_ + "= comes before NPOIN=", "the points must come first");
     keep_lines();

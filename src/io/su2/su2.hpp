@@ -35,7 +35,7 @@ inline constexpr std::array kElementKinds{
     ElementKind{14, Shape::pyramid, 5},
 };
 
-/// Positions in the file of a wedge's nodes.
+/// For each node of a wedge, its position in the file's line.
 inline constexpr std::array<int, 6> kWedge{0, 2, 1, 3, 5, 4};
 
 /// Data of SU2's files beyond the mesh.
@@ -81,8 +81,8 @@ std::int64_t label_of_name(std::string_view name);
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
-/// Returns the cells' places in a file: cells of the highest dimension, the markers' cells, marker by marker,
-/// then cells that are not written. `blocks` receives the first place of each of these groups.
+/// Returns the cells' places in a file: first those of the highest dimension, then each marker's, then those
+/// that are not written. `blocks` receives the first place of each of these groups.
 Permutation places(const Mesh& mesh, std::vector<Index>& blocks);
 
 }  // namespace meshorder::su2

@@ -98,7 +98,7 @@ struct Markers {
     }
   }
 
-  /// Returns the name of a set's marker, without characters that would end it in a file.
+  /// Returns the name of a set's marker, without characters that would end the name in a file.
   std::string name_of(const EntitySet& set) {
     const std::string plain = plain_name(set.name, "%=");
     std::string name(trimmed(plain));
@@ -154,7 +154,7 @@ const ElementKind* kind_of(Shape shape, int nodes) {
   return found == kElementKinds.end() ? nullptr : &*found;
 }
 
-/// Returns whether SU2 has the type and its dimension is the mesh's highest, 2 or 3, or one less.
+/// Returns whether SU2 has the type, and its dimension is the mesh's highest (at least 2) or one less.
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
   const int highest = mesh.cells.highest_dimension();
   return kind_of(shape, vertices) != nullptr && highest >= 2 && dimension(shape) >= highest - 1;

@@ -37,20 +37,21 @@ inline constexpr std::size_t kSmoothing = 2;
 /// Array of the homogeneous coordinate, for vertices that have one.
 inline constexpr std::string_view kWeight = "obj:weight";
 
-/// Returns the name of an array on cells with `corners` corners. The array has each corner's position, from
-/// 0, in the list of texture coordinates (or normals). Reordering leaves these lists unchanged.
+/// Returns the name of an array on cells with `corners` corners. The array has, for each corner, the
+/// position, from 0, of its entry in the list of texture coordinates (or normals). Reordering leaves these
+/// lists unchanged.
 inline std::string corner_array(std::string_view what, Index corners) {
   return "obj:" + std::string(what) + std::to_string(corners);
 }
 
 struct ObjMetadata : FormatMetadata {
-  std::string comments;   ///< whole lines, all of the file
+  std::string comments;   ///< all comments of the file, as whole lines
   std::string libraries;  ///< whole lines: mtllib, maplib, shadow_obj, trace_obj
   std::string texture;    ///< the lines vt
   std::string normals;    ///< the lines vn
   std::array<std::map<std::int32_t, std::string>, kStates.size()> names;
-  /// For statements g not in alphabetical order: the names as in the file, by the names in alphabetical
-  /// order. Spaces separate the names.
+  /// For statements g whose names are not in alphabetical order: the names as in the file, by the sorted
+  /// names. Spaces separate the names.
   std::map<std::string, std::string> group_statements;
 
   [[nodiscard]] std::vector<std::string> contents() const override {

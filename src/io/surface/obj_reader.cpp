@@ -55,8 +55,8 @@ std::optional<std::int32_t> as_integer(const std::string& text) {
   return value;
 }
 
-/// Returns the names by number: by their values if all are integers, else by alphabetical ranks, which do not
-/// depend on the order of cells.
+/// Returns the names by number: their values if all are integers (but for 0 if it means no name), else their
+/// alphabetical ranks, which do not depend on the order of cells.
 std::map<std::int32_t, std::string> numbered(const Named& named, bool are_numbers) {
   std::map<std::int32_t, std::string> result;
   const bool some_without = std::count(named.of_cell.begin(), named.of_cell.end(), 0) > 0;
@@ -73,7 +73,7 @@ std::map<std::int32_t, std::string> numbered(const Named& named, bool are_number
   return result;
 }
 
-/// Indices of corners, separately for each number of corners.
+/// Indices of the corners of cells, grouped by the number of corners of a cell.
 struct CornerIndices {
   struct OfWidth {
     std::vector<Index> cells;
@@ -89,7 +89,7 @@ struct CornerIndices {
   }
 };
 
-/// A list (v, vt or vn) and the highest position that a face named before the list had it.
+/// A list (v, vt or vn), and the highest position that a cell named while the list was still shorter.
 struct List {
   std::string_view name;
   Index count = 0;
@@ -130,7 +130,7 @@ bool parse_corner(std::string_view word, Line::Corner& corner) {
   return at == end;
 }
 
-/// Takes the numbers up to the end of the line; returns false if there is anything else.
+/// Takes the numbers up to the end of the line; returns false for anything else and for too many numbers.
 bool take_reals(Scanner& in, std::span<double> reals, std::size_t& count) {
   for (count = 0; !in.at_line_end(); ++count) {
     if (count == reals.size() || !in.take_number(reals[count])) return false;
@@ -388,7 +388,8 @@ class Reader {
     ++list.count;
   }
 
-  /// Returns the position, from 0, for a number that counts from 1 or, if negative, back from the last.
+  /// Returns the position, from 0, for a number that counts entries from 1 or, if negative, back from the
+  /// last.
   Index place(std::string_view text, List& list) {
     const auto number = parse_integer<Index>(scanner_, text, "a number of " + std::string(list.name));
     if (number < 0 && -static_cast<std::int64_t>(number) <= list.count) return list.count + number;
@@ -405,7 +406,7 @@ class Reader {
                   fmt::format("there are {} so far, counted from 1 or back from -1", list.count));
   }
 
-  /// Throws unless numbers that point ahead stay within the list.
+  /// Throws if a cell named a position that the whole list does not have.
   void check_ahead(const List& list) const {
     if (list.highest_ahead < list.count) return;
     throw InputError(Location{scanner_.file(), list.line_ahead, -1},
@@ -449,7 +450,7 @@ class Reader {
     add_cell(dimension);
   }
 
-  /// Adds a cell of the corners that were read last.
+  /// Adds a cell with the corners in `corners_`.
   void add_cell(int dimension) {
     const Index cell = mesh_.cell_count();
     mesh_.cells.push_back(shape(dimension, corners_.size()), corners_);
@@ -521,7 +522,7 @@ class Reader {
     }
   }
 
-  /// Makes a set of each name in g statements, in alphabetical order.
+  /// Makes a set for each name in g statements, in alphabetical order.
   void add_groups() {
     std::map<std::string, std::vector<Index>> members;
     std::vector<std::vector<std::vector<Index>*>> of_statement(groups_.names.size() + 1);

@@ -257,7 +257,7 @@ class ObjWriter {
     return found != native_->group_statements.end() ? found->second : names;
   }
 
-  /// Appends the statements that change between the cell before and this one.
+  /// Appends the statements that differ from those of the cell before.
   void add_changes(Text& row, Index cell) const {
     const auto groups = groups_of(cell);
     const bool same =

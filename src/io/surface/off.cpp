@@ -111,7 +111,7 @@ struct Numbers {
     values.push_back(parse_real(scanner, word, what));
   }
 
-  /// Returns whether all values were written as integers and are below 2·10⁹ in size.
+  /// Returns whether all values were written as integers and have absolute values below 2·10⁹.
   [[nodiscard]] bool are_integers() const {
     return integers && std::all_of(values.begin(), values.end(), [](double x) { return std::abs(x) < 2e9; });
   }
@@ -261,7 +261,8 @@ struct Content {
   GatheredVector colors;
   GatheredVector texture;
   GatheredVector face_colors;
-  /// Colours of some faces: for each face the array and the row of its colour; null if it has no colour.
+  /// Colours of some faces: for each face, the array and the row of its colour; a null array if the face has
+  /// no colour.
   std::vector<std::pair<const DataArray*, Index>> color_rows;
   std::vector<const DataArray*> written;
 };

@@ -68,7 +68,7 @@ struct Property {
   TypeWord count_type;  ///< type of the length of a list
   std::string why_left_out =
       {};                     ///< of vertices and cells: why the property is read but not kept; else empty
-  bool numbers_rows = false;  ///< in rows that go with faces: whether the property numbers them
+  bool numbers_rows = false;  ///< in rows that go with faces: whether the values are 0, 1, 2 …
 };
 
 /// Meaning of an element: vertices, a kind of cells, strips of triangles, rows that go with the faces, or

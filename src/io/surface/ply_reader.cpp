@@ -284,7 +284,7 @@ struct BodyReader : NumberReader {
     return with_type(type, [&](auto zero) { return static_cast<T>(number<decltype(zero)>(in, what)); });
   }
 
-  /// Reads the length of a list; fails if it exceeds the bytes that are left.
+  /// Reads the length of a list; fails if it is negative or exceeds the bytes that are left.
   Index list_length(Scanner& in, const Property& property) const {
     const auto length = number_as<std::int64_t>(in, property.count_type.type, "the length of a list");
     if (length < 0 || length > in.bytes_left() || length > kMaxIndex) {
@@ -317,7 +317,7 @@ struct BodyReader : NumberReader {
 
 Values values_of(Type type) { return values_of_type(static_cast<std::size_t>(type)); }
 
-/// The values of one property; values of a list separately for each length.
+/// The values of one property, grouped by length if they are lists.
 struct Column {
   struct OfLength {
     std::vector<Index> rows;
@@ -406,7 +406,8 @@ class Reader {
   }
 
   /// Reads rows of a text on all threads, up to the first row that is not a line of plain numbers or has more
-  /// than four vertices. Reads nothing of an element with other lists. Returns the number of rows read.
+  /// than four vertices. Returns the number of rows read: 0 for an element with lists besides that of
+  /// vertices.
   Index read_plain_rows(const Element& element, std::vector<Column>& columns) {
     const bool has_few_lists =
         element.role != Role::strips && element.role != Role::rows_of_faces &&
@@ -462,7 +463,8 @@ class Reader {
     if (!std::isfinite(x)) body_.fail("a coordinate is not finite", "a finite number is needed");
   }
 
-  /// Reads the vertices of a cell into a cell that has room for four; returns false if they do not fit.
+  /// Reads the vertices of a cell into `mesh_`, which has room for four; returns false if their number is
+  /// wrong.
   bool read_small_cell(Scanner& in, const Element& element, const Property& property, Index cell) {
     const Index length = body_.list_length(in, property);
     const bool is_tetrahedron = element.role == Role::tetrahedra;
@@ -527,10 +529,11 @@ class Reader {
     return true;
   }
 
-  /// Reads the triangles of strips, separated by −1. Reverses every second triangle: all then face one way.
+  /// Reads the triangles of a list of strips, which −1 separates. Reverses every second triangle: all then
+  /// face one way.
   bool read_strip(const Property& property) {
     std::array<Index, 3> last{};
-    int known = 0;  // corners of the strip, of which three make a triangle
+    int known = 0;  // corners of the strip so far; from the third on, each makes a triangle
     for (Index left = body_.list_length(body_.scanner, property); left > 0; --left) {
       const auto number = body_.number_as<std::int64_t>(body_.scanner, property.type.type, "a vertex");
       if (number == -1) {

@@ -40,10 +40,10 @@ using ply::TypeWord;
 struct ArraySource {
   const DataArray* array = nullptr;
   Index component = 0;        ///< component of the array, for a property that is not a list
-  std::vector<Index> row_of;  ///< the row of each vertex or cell, −1 for none; empty if row i belongs to i
+  std::vector<Index> row_of;  ///< row of each vertex or cell, −1: none; empty: item i has row i
 };
 
-/// A property to be written; without a source its numbers come from points, cells or rows.
+/// A property to be written; without a source, its numbers come from points, cells or the count of rows.
 struct Column {
   Property property;
   std::vector<ArraySource> sources;  ///< several for a list whose lengths differ
@@ -62,7 +62,7 @@ TypeWord word_of(const Values& values) {
   return {std::string(ply::kTypeWords[type].front()), static_cast<Type>(type)};
 }
 
-/// Returns the type to write 64-bit integers in, which PLY lacks.
+/// Returns the type in which 64-bit integers, which PLY lacks, are written.
 TypeWord word_for_wide(const Values& values) {
   const std::vector<double> numbers = as_reals(values);
   const bool fit = std::all_of(numbers.begin(), numbers.end(), [](double x) {
@@ -297,7 +297,7 @@ class Columns {
     use(array);
   }
 
-  /// Adds any other array: a property of its name, or a list if it has several components or gaps.
+  /// Adds any other array as a property of its name, a list if the array has several components or gaps.
   void add_other(const DataArray& array) {
     if (std::holds_alternative<std::vector<std::string>>(array.values)) return;
     const std::string name = plain_name(array.name.empty() ? "unnamed" : array.name, " ");
@@ -458,7 +458,7 @@ bool ply_holds(const Mesh& mesh, Shape shape, int vertices) {
          (mesh.format == "ply" && (dimension(shape) < 2 || shape == Shape::tetrahedron));
 }
 
-/// Notes the elements and properties that the reader did not understand.
+/// Notes the elements and properties that are not written, and why.
 void note_left_out(const ply::PlyMetadata& metadata, Notes& notes) {
   for (const Element& element : metadata.elements) {
     if (!element.why_left_out.empty())

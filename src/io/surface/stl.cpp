@@ -216,7 +216,7 @@ Facet read_facet(Scanner& scanner) {
 }
 
 /// Reads the facets of a solid: on all threads while facets have the usual seven lines. A facet of another
-/// form sets `are_regular` to false; facets are then read one by one.
+/// form sets `are_regular` to false; this facet and all after it are then read one by one.
 void read_facets(Scanner& scanner, Builder& builder, bool& are_regular) {
   constexpr Index kLines = 7;  // lines of a facet
   constexpr std::size_t kMostAtOnce = std::size_t{1} << 15;

@@ -115,7 +115,7 @@ void add_number(Scanner& in, IdMap& numbering, std::string_view what) {
 
 /// Reads the records of a file: each has its number, what `read_item(in, i)` reads, attributes and, if
 /// `marked`, a marker. Leaves out further columns that the header does not give, as TetGen does; fails unless
-/// all records have equally many.
+/// all records have the same number of further columns.
 template <class ReadItem>
 void read_items(Scanner& in, File file, bool marked, ReadContext& to, const ReadItem& read_item) {
   Records& part = to.parts[file];
@@ -241,7 +241,7 @@ void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, Rea
   });
 }
 
-/// Turns TetGen's region attribute, a 32-bit integer for each cell, into markers. Other attributes stay.
+/// Turns attributes into markers if each cell has one and all are 32-bit integers, as TetGen's regions are.
 void take_regions_as_markers(Records& part) {
   using Limits = std::numeric_limits<std::int32_t>;
   const bool regions = part.attributes_of_each == 1 &&
@@ -298,7 +298,7 @@ void read_boundary(Scanner& in, File file, ReadContext& to) {
     fail_neighbours(in);
   }
   const int most = file == kFace ? 6 : 3;
-  if (columns < least) nodes = least;  // the first record's own error says which column is missing
+  if (columns < least) nodes = least;  // reading the first record then fails and names the missing column
   if (columns > least && columns != most) {
     in.fail(fmt::format("a line has {} columns besides its number and marker", columns),
             fmt::format("{} or {} points are possible", least, most));
@@ -306,7 +306,8 @@ void read_boundary(Scanner& in, File file, ReadContext& to) {
   read_cells(in, file, file == kFace ? Shape::triangle : Shape::line, nodes, marked, to);
 }
 
-/// Returns, for each second-order node of the tetrahedra, the ends of its edge, the lower vertex first.
+/// Returns, for each vertex, the ends of the tetrahedra's edge whose middle node it is (lower end first), or
+/// −1.
 std::vector<std::array<Index, 2>> edges_of_nodes(const Mesh& mesh, Index tetrahedra) {
   constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
   std::vector<std::array<Index, 2>> result(mesh.points.size(), {-1, -1});
@@ -352,7 +353,7 @@ void settle_face_order(ReadContext& to) {
 
 // ---- all files of cells together
 
-/// Sets the ids of cells if the ids in a file are not consecutive. Each file numbers its cells separately.
+/// Sets the ids of cells unless each file numbers its cells consecutively from `base`.
 void set_cell_ids(ReadContext& to) {
   const int base = to.metadata->base;
   if (std::ranges::all_of(kCellFiles, [&](File file) { return to.parts[file].numbering.runs_from(base); }))

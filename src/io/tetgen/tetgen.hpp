@@ -33,9 +33,9 @@ struct TetGenMetadata final : FormatMetadata {
     std::string comments_after;
   };
   std::array<FileComments, 4> parts;
-  int base = 1;  ///< the number of the first point
+  int base = 1;  ///< 0 if the numbers of points begin at 0, else 1
   int nodes_in_ele = 4;
-  /// Whether .face lists second-order nodes by opposite edges, corner 1's first, as TetGen's -f does.
+  /// Whether .face lists the nodes on the edges opposite to corners 1, 2, 3 in this order (TetGen's -f).
   bool faces_name_opposite_edges = false;
 
   [[nodiscard]] std::vector<std::string> contents() const override { return {}; }
@@ -48,7 +48,7 @@ inline constexpr std::array<int, 10> kTetrahedron{0, 1, 2, 3, 6, 7, 9, 5, 8, 4};
 inline constexpr std::array<int, 6> kTriangleOpposite{0, 1, 2, 5, 3, 4};
 inline constexpr std::array<int, 6> kTriangle{0, 1, 2, 3, 4, 5};
 
-/// Returns one of these tables, for cells of `nodes` nodes in a file of that kind.
+/// Returns the first `nodes` entries of the table for cells of `nodes` nodes in this file.
 inline std::span<const int> places(File file, int nodes, bool faces_name_opposite_edges) {
   if (nodes == 4 || nodes == 10) return {kTetrahedron.data(), static_cast<std::size_t>(nodes)};
   const bool opposite = file == kEle || (file == kFace && faces_name_opposite_edges);

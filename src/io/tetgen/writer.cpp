@@ -165,7 +165,7 @@ void note_lost_names(const std::vector<Column>& columns, std::string_view file, 
 
 // ---- files
 
-/// Returns whether the items of a file have markers; notes the items without a marker, which get 0.
+/// Returns whether any item of a file has a marker; if so, notes how many items have none and get 0.
 bool has_markers(const Labels& labels, const std::vector<Index>& items, std::string_view file, Notes& notes) {
   if (!labels.any()) return false;
   const auto given =
@@ -174,7 +174,7 @@ bool has_markers(const Labels& labels, const std::vector<Index>& items, std::str
   return given > 0;
 }
 
-constexpr std::int64_t kLargestNumber = std::numeric_limits<std::int64_t>::max();  // number of a vertex
+constexpr std::int64_t kLargestNumber = std::numeric_limits<std::int64_t>::max();  // largest vertex number
 
 /// The contents of a file: its points or cells, and the columns that are written for each.
 struct FileContent {

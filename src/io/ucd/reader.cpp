@@ -98,14 +98,15 @@ class Reader {
     if (count > 0) (void)in_.raw_line();
   }
 
-  /// A cell's line after its number.
+  /// The contents of a cell's line after the cell's number.
   struct CellLine {
     std::int64_t material;
     const CellKind* kind;
     std::array<Index, 8> cell{};  ///< vertices, in the mesh's order
   };
 
-  /// Reads the line of the cell `id` after its number. Compares the cell's type with `likely` first.
+  /// Reads the rest of the line of the cell `id`, after the number. Compares the cell's type with `likely`
+  /// first.
   CellLine read_cell(Scanner& in, Index id, const CellKind* likely) const {
     CellLine line{.material = in.integer<std::int64_t>("the material of a cell"), .kind = likely};
     const std::string_view name = in.word("the type of a cell");
@@ -237,8 +238,8 @@ class Reader {
     for (std::size_t i = 0; i < arrays.size(); ++i) mesh_.data[first + i].values = std::move(arrays[i]);
   }
 
-  /// Takes the number of a line of data and returns the position of this node or cell; `row` if `numbers` is
-  /// null.
+  /// Takes the number of a line of data and returns the position of the node or cell with that number; `row`
+  /// if `numbers` is null.
   Index place_of_row(const IdMap* numbers, Index row, std::string_view item) {
     const Index id = number(in_, "the number of a line of data");
     const Index place = numbers == nullptr ? row : numbers->find(id);

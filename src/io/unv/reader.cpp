@@ -142,7 +142,7 @@ class UnvReader {
     if (dataset != kHeader) kept_.insert(name);
   }
 
-  /// Skips the binary part of a dataset, whose first line gives the numbers of its lines and bytes.
+  /// Skips the binary part of a dataset, whose first line says how many lines and bytes follow.
   void skip_binary() {
     std::array<std::int64_t, 4> fields{};  // byte order, format of numbers, lines, bytes
     std::string_view rest = binary_fields_;

@@ -33,7 +33,7 @@ std::vector<std::string_view> take_lines(Scanner& in, std::size_t count) {
 }
 
 /// Sets the fields that depend on a data type (1 integer, 2 single, 4 double, 5 complex single, 6 complex
-/// double) and the number of values; returns false if one is not supported.
+/// double) and the number of values; returns false if the type or the number is not supported.
 bool set_type(Results& results, std::int64_t type, std::int64_t values) {
   if (values < 1 || values > kMostComponents) return false;
   const bool is_complex = type == 5 || type == 6;

@@ -94,7 +94,7 @@ struct OtherElement {
 
 /// A permanent group.
 struct Group {
-  std::vector<std::int64_t> fields;  ///< the first line without the number of members
+  std::vector<std::int64_t> fields;  ///< numbers of the first line but for the count of members
   std::string name;                  ///< as in the file
   std::string set;                   ///< name of its sets in the mesh
   bool has_nodes = false;            ///< whether it has a set of vertices; true for empty groups
@@ -153,7 +153,7 @@ struct FoundResults {
   Results results;  ///< without the array's name
   std::int64_t line = 0;
   std::vector<std::int64_t> numbers = {};  ///< numbers of nodes or elements
-  std::vector<double> values = {};         ///< components · numbers
+  std::vector<double> values = {};         ///< `components` for each number
   std::string text = {};                   ///< the lines before the values
   std::string all = {};                    ///< all lines
 };
@@ -165,10 +165,11 @@ std::optional<Results> read_results_header(Scanner& in, int dataset);
 /// Returns the values as an array; nullopt if there are no values, or if an item is unknown or comes twice.
 std::optional<DataArray> array_of(const FoundResults& found, const IdMap& items);
 
-/// Returns the numbers of the coordinate systems in a dataset 2420 that are not global.
+/// Returns the numbers of those coordinate systems of a dataset 2420 that are not the global system.
 std::vector<std::int64_t> local_systems(std::string_view text);
 
-/// Parses a real number as Fortran writes it: 1.5D-3, 1.5E-3, 1.5-103. Throws InputError at the line of `at`.
+/// Parses a real number as Fortran writes it: 1.5D-3, 1.5E-3, 1.5-103. Throws InputError, with the line of
+/// `at`, for other words.
 double real_of(const Scanner& at, std::string_view word, std::string_view what);
 
 /// Returns whether a whole number leaves a blank in its ten columns. Readers can then split the line at

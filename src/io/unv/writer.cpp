@@ -42,8 +42,9 @@ class Lines {
   }
 
   /// Adds a number with `digits` digits after the point, right-aligned in `digits` + 8 columns (+ 9 for 16
-  /// digits), or in more columns if it is longer. Returns whether `digits` digits read back as the same
-  /// number. If not and `exact` is true, adds the number with 16 digits instead, which are always enough.
+  /// digits), or in more columns if the number is longer. Returns whether `digits` digits read back as the
+  /// same number. If not and `exact` is true, adds the number with 16 digits instead, which are always
+  /// enough.
   bool real(double value, int digits, char exponent = 'E', bool exact = false) {
     const auto width = static_cast<std::size_t>(digits < kDigitsOfCoordinates ? digits + 8 : digits + 9);
     char* end = rounded(value, digits);
@@ -339,8 +340,8 @@ class UnvWriter {
       return;
     }
     written_arrays_.insert(array);
-    // if values are no longer whole, the dataset gets a new header. It stays in place: the order of datasets
-    // decides which step an array belongs to
+    // if values are no longer whole, the dataset gets a new header. The dataset stays in place: the order of
+    // datasets decides which step an array belongs to
     if (results.integers && !holds_integers(*array)) return write_result(*array, results.name, 1);
     lines_.text(section.text);
     const bool counts = results.association == Association::cells;

@@ -26,7 +26,7 @@ constexpr std::string_view kSeparators = " \t,";
 
 std::string_view without_comment(std::string_view line) { return line.substr(0, line.find('#')); }
 
-/// The lines of a Vega file, with included files in place and without comments and blank lines.
+/// The lines of a Vega file, with those of included files in place, without comments and blank lines.
 class Lines {
  public:
   explicit Lines(const FilePath& path) : main_(path) { open(path); }
@@ -54,7 +54,7 @@ class Lines {
   }
   void take() { (void)at().raw_line(); }
 
-  /// Returns the scanner of the present file; errors report its position.
+  /// Returns the scanner of the current file; errors report its position.
   [[nodiscard]] Scanner& at() { return *files_.back().scanner; }
 
   /// Returns the comments since the last call, whole lines.
@@ -285,8 +285,8 @@ class Reader {
     }
   }
 
-  /// Returns whether there are no attributes, form feeds or vertical tabs. A Scanner skips the latter two,
-  /// which are errors here.
+  /// Returns whether there are no attributes, markers, form feeds or vertical tabs. A Scanner skips the last
+  /// two, which are errors here.
   bool is_plain(const Header& header) {
     const bool has_columns = header.columns != decltype(header.columns){};
     return !has_columns && !has_any_of(lines_.at().all(), "\f\v");

@@ -240,7 +240,7 @@ class VegaWriter {
     return found == names_.end() ? of_set : found->second;  // not the name of a set: all elements
   }
 
-  /// Returns a name that a line of Vega can hold.
+  /// Returns a free name for the set that fits Vega's lines; notes a new name.
   std::string name_of(const EntitySet& set) {
     const std::string name = plain_name(set.name, "#");
     const std::string_view words = trimmed(name);

@@ -128,7 +128,7 @@ const CellType* default_type(Shape shape, int vertices) {
   return found == kTypes.end() ? nullptr : &*found;
 }
 
-/// Returns whether a cell of this shape can have the VTK type of that number.
+/// Returns whether a cell of this shape and number of vertices can have VTK's type `number`.
 bool can_be(int number, Shape shape, int vertices) {
   const CellType* const type = type_of(number);
   return type != nullptr && type->shape == shape && fits(*type, vertices);
@@ -197,7 +197,7 @@ bool take_cells(Mesh& mesh, FileCells& cells, const ErrorAt& error, Notes& notes
   bool plain = true;  // whether shapes and numbers of vertices determine all types
   const Index count = index_size(cells.types);
   mesh.cells.shapes.resize(count);
-  const CellType* usual_type = nullptr;  // type of the last cell, if it swaps nothing: most cells are alike
+  const CellType* usual_type = nullptr;  // type of cell c − 1, if it swaps nothing: most cells are alike
   Offset usual_vertices = 0;
   for (Index c = 0; c < count; ++c) {
     const CellType* type = known[cells.types[c]];

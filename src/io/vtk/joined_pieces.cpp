@@ -132,7 +132,7 @@ class PieceJoiner {
     return rows;
   }
 
-  /// Returns the points to keep, sorted by global id if there are any; renumbers the vertices of all cells.
+  /// Returns the points to keep, sorted by global id if they have ids; renumbers the vertices of all cells.
   [[nodiscard]] std::vector<Index> points_kept(const std::vector<Index>& cells) {
     const std::vector<bool> is_ghost = ghosts(Association::vertices);
     std::vector<bool> is_used(is_ghost.size(), false);

@@ -195,7 +195,7 @@ void LegacyInput::texts(std::vector<std::string>& values, std::int64_t count, co
   }
 }
 
-/// Reads the length of a text; its first two bits say how many bytes encode the length.
+/// Reads the length of a text; the first two bits say how many bytes encode the length.
 std::int64_t LegacyInput::text_length(const std::string& what) {
   std::uint64_t length = scanner.binary<std::uint8_t>(what);
   constexpr std::array kFollowing{7, 3, 1, 0};

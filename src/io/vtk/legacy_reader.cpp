@@ -197,7 +197,7 @@ class LegacyReader {
       Offset place = offsets[c];
       for (++next; next < end; ++next, ++place) {
         if (numbers[next] < 0 || numbers[next] >= limit) return false;
-        numbers[place] = numbers[next];  // overwrites numbers that were read before
+        numbers[place] = numbers[next];  // overwrites numbers that were checked before
       }
       offsets[c + 1] = place;
     }
@@ -209,7 +209,7 @@ class LegacyReader {
     return true;
   }
 
-  /// Fills `numbers` from the position of `at`; returns whether all are regular.
+  /// Fills `numbers` from the position of `at` on; returns false if a number is missing or irregular.
   bool read_int32s(Scanner& at, std::vector<std::int32_t>& numbers) const {
     if (!in_.binary) return read_regular_numbers<std::int32_t>(at, numbers) == numbers.size();
     constexpr auto kBytes = static_cast<std::int64_t>(sizeof(std::int32_t));
@@ -449,7 +449,8 @@ class LegacyReader {
     mesh_.format_metadata = metadata_;
   }
 
-  /// Replaces the numbers of each polyhedron by its points, in order of appearance; keeps its faces apart.
+  /// Replaces the numbers of each polyhedron by its points, in order of appearance; keeps its faces in
+  /// `all.polyhedra`.
   void take_faces(FileCells& all) {
     if (std::find(all.types.begin(), all.types.end(), kPolyhedron) == all.types.end()) {
       if (vertex_fault_) throw InputError(*vertex_fault_);

@@ -174,8 +174,8 @@ class LegacyWriter {
 
   // ---- arrays
 
-  /// Returns the number type of an array: its type in the file if that type can hold the values, else the
-  /// usual type.
+  /// Returns the number type of an array: its type in the file that was read if that type can hold the
+  /// values, else the usual type.
   [[nodiscard]] std::string type_of(const DataArray& array, std::optional<Association> association) const {
     const ArrayFacts* facts = find_facts(from_.metadata, association, array.name);
     std::string usual(kLegacyTypeNames[array.values.index()]);
@@ -250,7 +250,7 @@ class LegacyWriter {
   }
 
   void write_cells() {
-    // VTK numbered the nodes of some hexahedra differently before version 5.1
+    // before file version 5.1, VTK numbered the nodes of some hexahedra differently
     const Cells& cells =
         from_.cells_with_faces(layout_.version != "5.1" && std::any_of(from_.types.begin(), from_.types.end(),
                                                                        is_higher_order_hexahedron));

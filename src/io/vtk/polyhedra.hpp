@@ -26,7 +26,7 @@ struct Polyhedra {
     return {numbers.data() + starts[c], numbers.data() + starts[c + 1]};
   }
 
-  /// Returns the faces after vertices and cells have moved; the arguments are those of FormatMetadata::moved.
+  /// Returns the faces with vertices and cells renumbered; the arguments are those of FormatMetadata::moved.
   /// O(numbers).
   [[nodiscard]] Polyhedra moved(std::span<const Index> new_vertices, std::span<const Index> new_cells) const;
 };

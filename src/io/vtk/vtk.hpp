@@ -84,7 +84,7 @@ inline constexpr std::array kLegacyAttributes{
     LegacyAttribute{"EDGE_FLAGS", Role::edge_flag, 1},
 };
 
-/// Sections of cells in legacy POLYDATA files, in the order that cell data follows.
+/// Sections of cells in legacy POLYDATA files. Cell data list the cells in this order of sections.
 inline constexpr std::array<std::string_view, 4> kPolydataSections{"VERTICES", "LINES", "POLYGONS",
                                                                    "TRIANGLE_STRIPS"};
 
@@ -95,7 +95,7 @@ inline constexpr std::string_view kPoints = "POINTS";
 inline constexpr std::array<std::string_view, 4> kCompressors{
     "", "vtkZLibDataCompressor", "vtkLZ4DataCompressor", "vtkLZMADataCompressor"};
 
-/// An array and its role. If a legacy file has several arrays of one role, the first one has the role.
+/// An array and its role. If a legacy file has several arrays of one role, the first array has the role.
 struct ArrayRole {
   Role role;
   Association association;
@@ -156,7 +156,7 @@ const ArrayFacts* find_facts(const VtkMetadata& metadata, std::optional<Associat
 /// determine the types: a tetrahedron of 10 nodes may be a quadratic or a Lagrange one.
 inline constexpr std::string_view kCellTypes = "vtk:type";
 
-/// Cells as in VTK's files: type numbers of vtkCellType.h; cell c has the vertices from `offsets[c]` on.
+/// Cells as in VTK's files: types of vtkCellType.h; cell c has vertices `offsets[c]` … `offsets[c + 1] − 1`.
 struct FileCells {
   std::vector<std::uint8_t> types;
   std::vector<Offset> offsets{0};
@@ -183,9 +183,9 @@ bool take_cells(Mesh& mesh, FileCells& cells, const ErrorAt& error, Notes& notes
 /// Returns whether the mesh was read from one of VTK's formats.
 bool is_from_vtk(const Mesh& mesh);
 
-/// Returns whether VTK has a type for these cells. Node orders above second order are known for meshes from
-/// VTK only, and so are the faces of polyhedra. Prisms of five and six sides, which have types of their own,
-/// are polyhedra here.
+/// Returns whether VTK has a type for these cells. The node numbering above second order, and the faces of
+/// polyhedra, are known only for meshes from VTK. Prisms of five and six sides, which have types of their
+/// own, are polyhedra here.
 bool holds(const Mesh& mesh, Shape shape, int vertices);
 
 /// Returns whether the mesh has polyhedra whose faces were read from a file of VTK.
@@ -203,11 +203,11 @@ Index first_unfit_polyhedron(const Cells& cells, const std::vector<std::uint8_t>
 /// XML version 2.1 and legacy version 5.1).
 bool is_higher_order_hexahedron(std::uint8_t type);
 
-/// Returns whether the nodes of a cell of that type may be in another order in a file than in a Mesh.
+/// Returns whether a file may list the nodes of a cell of that type in another order than a Mesh.
 bool may_be_reordered(std::uint8_t type);
 
-/// Swaps the two edges that VTK 9 numbers differently in all higher-order hexahedra of `cells`; a second call
-/// swaps them back. Degrees come from the array HigherOrderDegrees of the mesh, if any.
+/// Swaps, in all higher-order hexahedra of `cells`, the two edges that VTK 9 numbers differently; a second
+/// call swaps them back. Degrees come from the array HigherOrderDegrees of the mesh, if any.
 void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& types, Cells& cells);
 
 // ---- reading
@@ -239,8 +239,8 @@ DataArray full_array(const DataArray& array, Index count);
 /// Where a file stores the names of its arrays; this decides which characters they may have.
 enum class NamePlace : std::uint8_t { legacy, xml, hdf5 };
 
-/// Returns a name made valid for a dataset of HDF5, where a slash separates groups, a dot is the group
-/// itself, and a zero byte ends a name.
+/// Returns a name made valid as the name of an HDF5 dataset, where a slash separates groups, a dot is the
+/// group itself, and a zero byte ends a name.
 std::string name_in_hdf5(std::string name);
 
 /// The input of the writers, made from a mesh. Borrows the mesh and the notes.
@@ -298,8 +298,8 @@ struct Pieces {
 /// Makes one mesh of its pieces, in place:
 /// - Leaves out the cells that `vtkGhostType` marks as cells of another piece, and the points that it marks
 ///   and that no remaining cell uses. Leaves out `vtkGhostType` itself if it marks nothing else.
-/// - Sorts points and cells by their global ids, which are in the array with that role, else with VTK's usual
-///   name. Leaves out ids that are 0, 1, 2 …
+/// - Sorts points and cells by their global ids, which are in the array with the role `global_ids`, else in
+///   that with VTK's usual name. Leaves out ids that are 0, 1, 2 …
 /// - Merges the copies of a point in several pieces, with the values of the piece that owns the point. If
 ///   points have no ids, each piece keeps its copy; a note says so.
 ///

@@ -35,7 +35,7 @@ struct VtuElement {
   std::string name;
   std::vector<VtuAttribute> attributes;
   std::size_t at = 0;     ///< position of its < in the file, in bytes
-  std::size_t end = 0;    ///< end of its end tag, or of its start tag while it is parsed
+  std::size_t end = 0;    ///< end of its end tag, or of its start tag while the element is parsed
   std::string_view text;  ///< its first text that is not blank, up to the next child or comment
   std::vector<VtuElement> children;
 
@@ -72,7 +72,7 @@ class VtuDocument {
 
   [[nodiscard]] const VtuElement& root() const noexcept { return root_; }
   [[nodiscard]] const VtuEncoding& encoding() const noexcept { return encoding_; }
-  /// Returns ten times the version.
+  /// Returns ten times the file's version.
   [[nodiscard]] int version() const noexcept { return version_; }
 
   /// Returns an InputError at the line of an element.
@@ -86,7 +86,7 @@ class VtuDocument {
     return std::string(scanner_.all().substr(element.at, element.end - element.at));
   }
 
-  /// Returns a required attribute.
+  /// Returns the value of an attribute. Throws InputError if it is missing.
   [[nodiscard]] const std::string& required(const VtuElement& element, std::string_view name) const;
   /// Returns the count in an attribute, 0 … `most`; `most` is kMaxIndex or the highest 64-bit number.
   [[nodiscard]] std::int64_t count(const VtuElement& element, std::string_view name,
@@ -96,8 +96,8 @@ class VtuDocument {
 
   /// Throws Error if allocating `bytes` for an array would exceed the memory limit.
   void claim(const VtuElement& array, std::uint64_t bytes) const;
-  /// Returns the `count` values of an array in its number type. Throws Error if there are more or fewer;
-  /// allocates no more than the size of the file allows.
+  /// Returns the `count` values of an array in its number type. Throws Error if the array is damaged or has
+  /// more or fewer values; allocates no more than the size of the file allows.
   [[nodiscard]] Values values(const VtuElement& array, std::int64_t count) const;
   /// Returns the number of values that an array of numbers has. O(length of its text or base64).
   [[nodiscard]] std::int64_t value_count(const VtuElement& array) const;

@@ -217,8 +217,8 @@ class VtuReader {
     read_polyhedra(*cells, count, first_point);
   }
 
-  /// Appends the `count` ends of an array, which count from 0, to `ends`, each increased by the old last
-  /// entry of `ends`. Returns the array's last end. Messages call an item a `thing`.
+  /// Appends the `count` ends of an array to `ends`. The array's ends count from 0; each is increased by the
+  /// old last entry of `ends`. Returns the array's last end. Messages call an item a `thing`.
   Offset append_ends(const VtuElement& array, std::int64_t count, const char* thing,
                      std::vector<Offset>& ends) {
     const Offset first = ends.back();
@@ -335,7 +335,7 @@ class VtuReader {
         append_ends(cell_array(cells, "polyhedron_offsets", kNeeded), count, "cell", face_starts);
     const VtuElement& faces_of_cells = cell_array(cells, "polyhedron_to_faces", kNeeded);
     std::vector<Index> faces;
-    auto size = static_cast<std::uint64_t>(count);  // count of all numbers of polyhedra
+    auto size = static_cast<std::uint64_t>(count);  // how many numbers all polyhedra have
     append_integers(faces_of_cells, face_count, faces, [&](std::int64_t, auto face) {
       if (std::cmp_less(face, 0) || std::cmp_greater_equal(face, corner_starts.size() - 1)) {
         throw file_->error(faces_of_cells, fmt::format("a polyhedron names the face {}", face),
@@ -388,7 +388,8 @@ class VtuReader {
     });
   }
 
-  /// Throws InputError for an array of a step after the first; notes that the time of a step is left out.
+  /// Throws InputError for an array of a time step after the first; notes that the first step's time is left
+  /// out.
   void refuse_time_steps(const VtuElement& array) const {
     const std::string* const step = array.attribute("TimeStep");
     if (step == nullptr) return;

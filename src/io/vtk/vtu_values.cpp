@@ -255,7 +255,8 @@ std::vector<Number> VtuDocument::numbers(const VtuElement& array, std::int64_t c
   return result;
 }
 
-/// Reads the bits of an array of type Bit: eight in a byte, the highest first; in text, a number for each.
+/// Reads the bits of an array of type Bit: eight in a byte, the highest first; in text, one number for each
+/// bit.
 std::vector<std::uint8_t> VtuDocument::bits(const VtuElement& array, std::int64_t count) const {
   if (mode(array) == VtuEncoding::Mode::ascii) return words<std::uint8_t>(array, count);
   const std::vector<std::uint8_t> packed = numbers<std::uint8_t>(array, (count + 7) / 8);

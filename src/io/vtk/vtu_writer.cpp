@@ -43,7 +43,7 @@ using Numbers =
 
 /// An array of the file: its tag and its numbers; for strings, the codes of their characters.
 struct Array {
-  std::string tag;  // tag without the format and the end
+  std::string tag;  // tag without its format attribute and its end
   Numbers numbers;
   std::string information;
   std::vector<std::string> compressed;  // blocks of appended arrays
@@ -315,7 +315,7 @@ class VtuWriter {
     out_.write(base64.finish());
   }
 
-  /// Writes numbers as text, six a line.
+  /// Writes numbers as text, six in a line.
   void write_text(const Array& array) {
     std::visit(
         [&](const auto& numbers) {
@@ -338,7 +338,7 @@ class VtuWriter {
     }
   }
 
-  /// Computes the offsets of appended arrays.
+  /// Computes the offsets of appended arrays, which it first compresses if the file has a compressor.
   void place() {
     std::uint64_t offset = 0;
     for (ArraySection& section : sections_) {

@@ -86,7 +86,7 @@ class VtkHdfReader {
     if (!place) return false;
     part.type = static_cast<std::uint8_t>(file_.info(path).alternative);
     part.at = static_cast<std::int64_t>(*place);
-    if (part.role == FilePart::Role::offsets) {  // after the first offset, the others are the ends of cells
+    if (part.role == FilePart::Role::offsets) {  // skips the first offset; the others are the ends of cells
       --part.rows;
       part.at += part.row_size();
     }

@@ -22,7 +22,8 @@ namespace meshorder::vtkhdf {
 
 inline constexpr std::string_view kRoot = "/VTKHDF";
 inline constexpr std::string_view kType = "UnstructuredGrid";
-/// Attribute: number of values in a row of a field, if not 1. VTK 9.1 reads only fields of one dimension.
+/// Attribute with the number of values in a row of a field, if not 1. VTK 9.1 reads only fields of one
+/// dimension.
 inline constexpr std::string_view kComponents = "NumberOfComponents";
 
 /// Returns the group of the arrays on vertices or cells.
@@ -48,7 +49,7 @@ struct RawGrid {
 /// `read` would note something: for several partitions, chunks or another byte order, texts on points or
 /// cells, and contents that the format does not define. O(datasets + size of the fields).
 ///
-/// @throws InputError as `read` for faults of counts and shapes; values are not looked at
+/// @throws InputError as `read` for faults of counts and shapes; the values of parts are not read
 std::optional<RawGrid> find_raw(const FilePath& path);
 
 /// Writes a file of several partitions to a path on disk, with fields, roles and counts. Allocates space for
@@ -57,7 +58,7 @@ std::optional<RawGrid> find_raw(const FilePath& path);
 /// @param path      path of the file
 /// @param name      name of the file in messages
 /// @param layout    arrays of all partitions; its parts receive the positions of their values in the file
-/// @param metadata  fields, and roles of arrays of the layout; others are left out
+/// @param metadata  fields, and roles of arrays of the layout; other roles are left out
 /// @param notes     receives notes on arrays and fields that have another name in the file
 /// @throws InputError if the file cannot be written
 void write_without_values(const std::filesystem::path& path, const std::string& name,

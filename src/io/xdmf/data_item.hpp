@@ -43,14 +43,14 @@ struct DataPlace {
 
   /// Returns the number of values.
   [[nodiscard]] std::uint64_t count() const;
-  /// Adds a later DataItem that names the same values.
+  /// Adds another DataItem that names the same values.
   void repeat(const DataPlace& other);
 };
 
 /// Returns a key of an array: DataItems with the same key have the same values.
 std::string key_of(const DataPlace& place);
 
-/// Returns the attributes NumberType and Precision for the number type of an alternative of Values.
+/// Returns the XML attributes NumberType and Precision for an alternative of Values.
 std::pair<std::string, int> number_type_of(std::size_t alternative);
 
 /// Splits "mesh.h5:/Mesh/topology" into the file and the path in it.
@@ -66,11 +66,12 @@ class DataReader {
   [[nodiscard]] DataPlace place_of(pugi::xml_node item);
   /// Returns the values of a place, as many as its shape says.
   [[nodiscard]] Values read(const DataPlace& place);
-  /// Returns whole numbers as indices. A number out of range becomes the nearest 32-bit limit, which is not
-  /// an index.
+  /// Returns the whole numbers of a place as indices. A number out of range becomes the nearest 32-bit limit,
+  /// which is not an index.
   [[nodiscard]] std::vector<Index> read_indices(const DataPlace& place);
 
-  /// Returns the path of a file that a DataItem names. Throws InputError if it is missing or not allowed.
+  /// Returns the path of a file that a DataItem names. Throws InputError if the file is missing or not
+  /// allowed.
   [[nodiscard]] FilePath path_of(pugi::xml_node item, const std::string& name) const;
   /// Returns the opened HDF5 files by their names in the XML.
   [[nodiscard]] const std::map<std::string, hdf5::File>& files() const noexcept { return files_; }

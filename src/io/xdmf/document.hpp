@@ -75,7 +75,7 @@ std::vector<pugi::xml_node> elements_named(const pugi::xml_document& xml, std::s
 void parse(pugi::xml_document& xml, const std::string& text);
 
 /// Sets the text of an element; sets or adds an attribute. Both throw std::bad_alloc if there is no memory,
-/// also for a null element: there was no memory to add the element.
+/// or if `element` is null because there was no memory to add it.
 void set_text(pugi::xml_node element, const std::string& text);
 void set_attribute(pugi::xml_node element, const char* name, const std::string& value);
 

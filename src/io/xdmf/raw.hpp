@@ -14,7 +14,7 @@
 
 namespace meshorder::xdmf {
 
-/// A file as a list of parts: points, connectivity and arrays, whose names are their paths in the HDF5 file.
+/// A file as a list of parts: points, connectivity and arrays. A part's name is its path in the HDF5 file.
 struct RawGrid {
   FileLayout layout;
   std::string data;  ///< path of the HDF5 file
@@ -26,7 +26,7 @@ struct RawGrid {
 /// another byte order, cells of several types, and cells whose nodes a Mesh orders differently.
 /// O(size of the XML + datasets).
 ///
-/// @throws InputError as `read` for faults of the XML and of shapes; values are not looked at
+/// @throws InputError as `read` for faults of the XML and of shapes; the values of parts are not read
 std::optional<RawGrid> find_raw(const FilePath& path);
 
 /// Returns the mark of files that are written together. `checksum`: a `Checksum` of all points, then of the

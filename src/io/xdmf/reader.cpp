@@ -17,7 +17,7 @@
 #include <set>
 #include <utility>
 
-// Reads Grids and their points, and keeps the contents of the files besides the mesh.
+// Reads Grids and their points, and keeps what the files hold besides the mesh.
 
 namespace meshorder::xdmf {
 
@@ -71,7 +71,8 @@ namespace {
 
 constexpr int kDeepestGrid = 8;
 
-/// Adds the uniform Grids within a Grid. Throws InputError for unsupported Grids, such as structured Grids.
+/// Appends the uniform Grids of a Grid, or the Grid itself, to `grids`. Throws InputError for unsupported
+/// Grids, such as structured Grids.
 void collect(const Document& document, pugi::xml_node grid, int depth, int& series,
              std::vector<GridElement>& grids) {
   const std::string type = attribute(grid, "GridType", "Type");

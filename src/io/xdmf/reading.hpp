@@ -47,14 +47,14 @@ struct Reading {
 
  private:
   struct KnownSet {
-    std::size_t place;    // index in the mesh
+    std::size_t place;    // index in `mesh.sets`
     bool is_grid;         // whether it is the set of a Grid's cells
     std::set<int> parts;  // parts that have members in it
   };
   std::string next_set_name(Association association, const std::string& wanted, int part);
 
   std::map<std::pair<Association, std::string>, KnownSet> known_sets_;
-  /// The last number given to a name, by the wanted name and the part (−1 for sets of Grids).
+  /// The highest number given to a name so far, by the wanted name and the part (−1 for sets of Grids).
   std::map<std::tuple<Association, std::string, int>, int> set_numbers_;
 };
 
@@ -106,7 +106,7 @@ class ArrayReader {
     std::vector<bool> has_row;  ///< whether each cell has a row; empty before rows are appended
   };
 
-  /// Adds an array under its name or, if that is taken, under a free name; returns the name.
+  /// Adds an array under its name or, if that is taken, under a free name; returns the array's name.
   std::string add_growing(DataArray array);
   [[nodiscard]] std::string name_of(pugi::xml_node element) const;
   void read_of_grid(pugi::xml_node item, const std::string& name);

@@ -41,7 +41,7 @@ std::size_t hash_of(const std::vector<Index>& vertices) {
   return hash;
 }
 
-/// Returns whether `layout_of` added a Grid.
+/// Returns whether a Grid is one that `layout_of` added.
 bool is_added(pugi::xml_node grid) {
   return !grid.find_child_by_attribute("Information", "Name", kAdded.data()).empty();
 }
@@ -181,7 +181,8 @@ FileCells cells_of(Reading& reading, pugi::xml_node topology, pugi::xml_node ite
   return piece;
 }
 
-/// Returns an earlier cell of the same type and vertices for each cell of a piece; nullopt if a cell is new.
+/// Returns, for each cell of a piece, the mesh's cell with the same type and vertices; nullopt if a cell is
+/// new.
 std::optional<std::vector<Index>> known_cells(const Reading& reading, const FileCells& piece) {
   const Index count = index_size(piece.types);
   std::array<bool, 256> types{};
@@ -231,7 +232,7 @@ bool is_part(const Reading& reading, int part, const FileCells& piece) {
   return true;
 }
 
-/// Appends the cells of a piece to those of the mesh; returns their indices.
+/// Appends the cells of a piece to those of the mesh; returns the indices of the appended cells.
 std::vector<Index> append(Reading& reading, pugi::xml_node topology, FileCells piece) {
   const Index first = index_size(reading.cells.types);
   const Index count = index_size(piece.types);

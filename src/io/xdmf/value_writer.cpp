@@ -15,7 +15,7 @@
 namespace meshorder::xdmf {
 namespace {
 
-/// Returns the shape of `count` values in rows of `components`.
+/// Returns the shape of `count` values in rows of `components` values.
 std::vector<std::uint64_t> shape_of(std::size_t count, std::size_t components) {
   std::vector<std::uint64_t> shape{count / components};
   if (components > 1) shape.push_back(components);

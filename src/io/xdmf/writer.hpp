@@ -71,8 +71,8 @@ class Writer {
   /// shape.
   static std::vector<std::uint64_t> describe(pugi::xml_node item, const Values& values,
                                              std::size_t components);
-  /// Writes values to a dataset that no other field has, and names the dataset in the DataItem. `file`: its
-  /// name in the old XML.
+  /// Writes values to a dataset that no other field has, and names the dataset in the DataItem. `file`: name
+  /// of the HDF5 file in the old XML.
   void put_apart(pugi::xml_node item, const std::string& file, const std::string& dataset,
                  const Values& values, const std::vector<std::uint64_t>& shape);
   /// Returns the DataItems that have the values of a place.
@@ -100,9 +100,10 @@ class Writer {
   void announce_cells(pugi::xml_node topology, std::uint64_t cells) const;
   /// Returns whether the cell is a linear wedge whose first triangle faces outward in the file.
   [[nodiscard]] bool is_turned(Index c) const;
-  /// Returns the type of these cells, null if they have several types or there are none.
+  /// Returns the type of these cells, null if they have several types or a type that XDMF lacks, or if `rows`
+  /// is empty.
   [[nodiscard]] const TopologyType* common_type(const std::vector<Index>& rows) const;
-  /// Returns the values of a Topology of these cells; if it is mixed, each cell's type precedes its points.
+  /// Returns the values of a Topology of these cells; if `mixed`, each cell's type precedes its points.
   [[nodiscard]] std::vector<Index> numbers_of(const std::vector<Index>& rows, bool mixed, int base) const;
   void write_array(const Field& field);
   void write_set(const Field& field);

@@ -29,7 +29,7 @@ std::string mark_of(std::uint64_t checksum) { return fmt::format("{:016x}", chec
 
 namespace {
 
-/// Makes the files of a layout that has all values in one HDF5 file.
+/// The files of a layout whose values are all in one HDF5 file.
 class XdmfWithData final : public SplitFile {
  public:
   explicit XdmfWithData(std::shared_ptr<const XdmfLayout> layout) : layout_(std::move(layout)) {}

@@ -35,7 +35,8 @@ inline constexpr int kPolyvertex = 1;
 inline constexpr int kPolyline = 2;
 inline constexpr int kMixed = 0x70;
 
-/// Returns the type of a name in upper or lower case, also a short name of XDMF 2; null if there is none.
+/// Returns the type with a name, in upper or lower case, or with a short name of XDMF 2; null if there is
+/// none.
 const TopologyType* topology_type(std::string_view name);
 /// Returns the type of that number, null if there is none.
 const TopologyType* topology_type(std::int64_t number);
@@ -44,8 +45,8 @@ const TopologyType* topology_type_of(Shape shape, int vertices);
 /// Returns VTK's type number for cells of a type with `nodes` nodes.
 int vtk_type(const TopologyType& type, std::int64_t nodes);
 
-/// Returns whether XDMF has a type for these cells. Node orders above second order are known for meshes from
-/// XDMF only.
+/// Returns whether XDMF has a type for these cells. The node numbering above second order is known only for
+/// meshes from XDMF.
 bool holds(const Mesh& mesh, Shape shape, int vertices);
 
 // ---- contents of a file
@@ -107,8 +108,8 @@ int below_of(std::string_view grid);
 /// Returns the cells of each part, in the order of the file.
 std::vector<std::vector<Index>> cells_of_parts(const Mesh& mesh, const XdmfLayout& layout);
 
-/// Returns the positions of the cells in a file of `layout_of`, by dimension, highest first. `blocks`
-/// receives the first cell of each dimension.
+/// Returns the position of each cell in a file of `layout_of`: by dimension, highest first. `blocks` receives
+/// the position of each dimension's first cell.
 Permutation places(const Mesh& mesh, std::vector<Index>& blocks);
 
 }  // namespace meshorder::xdmf
