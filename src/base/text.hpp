@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <concepts>
 #include <cstddef>
 #include <iterator>
@@ -67,6 +66,10 @@ inline std::string_view next_word(std::string_view& line, std::string_view separ
   return {begin, static_cast<std::size_t>(after - begin)};
 }
 
+/// Returns an ASCII letter in lower case, and other bytes unchanged, in any locale: in Turkish,
+/// std::tolower('I') is not 'i'.
+constexpr char lower_case(char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
 /// Returns the text with its ASCII letters in lower case.
 std::string lower_case(std::string_view text);
 
@@ -74,10 +77,9 @@ std::string lower_case(std::string_view text);
 std::string upper_case(std::string_view text);
 
 /// Returns whether two words differ at most in the case of ASCII letters.
-inline bool same_but_for_case(std::string_view a, std::string_view b) {
-  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+constexpr bool same_but_for_case(std::string_view a, std::string_view b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [&](char x, char y) { return lower(x) == lower(y); });
+                    [](char x, char y) { return lower_case(x) == lower_case(y); });
 }
 
 /// Returns `text` with escapes in place of bytes that are not UTF-8, and of characters that a terminal acts

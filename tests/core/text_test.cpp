@@ -15,6 +15,16 @@ namespace {
 
 using namespace std::string_literals;
 
+// constant expressions do not depend on the locale, as std::tolower does
+static_assert(same_but_for_case("MESH.INP", "mesh.inp"));
+static_assert(!same_but_for_case("a", "ab"));
+static_assert(!same_but_for_case("[", "{"));
+
+TEST(Text, ChangesTheCaseOfAsciiLettersOnly) {
+  EXPECT_EQ(lower_case("AZ[\xC4Ä1"), "az[\xC4Ä1");
+  EXPECT_EQ(upper_case("az{\xE4ä1"), "AZ{\xE4ä1");
+}
+
 TEST(Visible, ShowsWhatATerminalWouldActOn) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"", ""},

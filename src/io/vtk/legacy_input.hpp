@@ -13,10 +13,6 @@
 
 namespace meshorder::vtk {
 
-/// Returns "SCALARS" for "scalars".
-std::string upper_case(std::string_view text);
-/// Returns "float" for "FLOAT".
-std::string lower_case(std::string_view text);
 /// Decodes %XX in names and strings.
 std::string percent_decoded(std::string_view text);
 
