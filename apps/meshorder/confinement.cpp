@@ -165,7 +165,7 @@ class Reading {
   struct rlimit before_ {};
 };
 
-// ---- the process that waits
+// ---- the waiting parent
 
 extern "C" void pass_on(int signal, siginfo_t* info, void* /*context*/) {
   const int error = errno;

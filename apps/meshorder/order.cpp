@@ -116,7 +116,7 @@ class Ordering {
     times_.set_bytes("read", bytes_on_disk(arguments_.input));
   }
 
-  /// Arranges the mesh as in the output and computes its order.
+  /// Arranges the cells for the output format and computes the order.
   void order() {
     if (is_race(arguments_)) calibrate();
     progress_.stage("ordering", 0.4, 0.7);

@@ -17,9 +17,9 @@ struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// Blocks signals that end meshorder (SIGINT, SIGTERM, SIGHUP) while alive: `run_program` notices them,
-/// throws Interrupted and leaves them pending. They take effect when this object is destroyed. On Linux,
-/// processes that lose their parent become children of this process.
+/// While this object exists, SIGINT, SIGTERM and SIGHUP are blocked: `run_program` notices them, throws
+/// Interrupted and leaves them pending; they take effect when the object is destroyed. On Linux, descendants
+/// that lose their parent become children of this process, for good.
 class TrialSignals {
  public:
   TrialSignals();

@@ -92,8 +92,9 @@ struct OrderOptions {
   double tolerance = 0.1;
   int max_iterations = 500;           ///< limit for the eigensolver on the whole graph, ≥ 1
   Workload workload = Workload::all;  ///< what `auto` optimises
-  RealView start = {};    ///< an estimate of the Fiedler vector: n numbers, such as `Order::vector`; or none
-  IndexView groups = {};  ///< group of each vertex, any integer, or none; groups stay together and ascend
+  RealView start = {};  ///< an estimate of the Fiedler vector: n numbers, such as `Order::vector`; or none
+  IndexView groups =
+      {};  ///< group (any integer) of each vertex; empty: no groups. Groups stay together, ascending
   IndexView cell_groups = {};  ///< group of each cell, or none; kept together within each block and dimension
   Check check = Check::full;
   Symmetry symmetry = Symmetry::require;

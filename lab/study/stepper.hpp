@@ -30,7 +30,7 @@ struct StepperTask {
   std::vector<int> processors = {};  ///< to bind the process to; empty: not bound
   // only for a fluid, which has no mesh file and no order files
   std::string vertex_method = {};   ///< "auto": a Reorderer decides when to order; others: see FluidOrdering
-  std::string element_method = {};  ///< method for the tetrahedra, in each step
+  std::string element_method = {};  ///< method that orders the tetrahedra in each step
   double spacing = 0;               ///< of the particles, m
 };
 
@@ -42,7 +42,7 @@ struct StepperReady {
   double setup_seconds = 0;
   double step_seconds = 0;       ///< of the warm-up step, which is undone
   Offset bytes = 0;              ///< memory of the body
-  std::string fingerprint;       ///< checksums of the mesh, and of the parameters in this order
+  std::string fingerprint;       ///< checksums: of the mesh, of the parameters as reordered
   bool fixed_addresses = false;  ///< address space randomisation is off
 };
 

@@ -100,7 +100,8 @@ bool is_su2_keyword(std::string_view word, std::string_view rest) {
   });
 }
 
-/// Returns whether the bytes are a netCDF-3 file, or an HDF5 file with a name that all Exodus files contain.
+/// Returns whether the bytes are a classic netCDF file, or an HDF5 file with a name that all Exodus files
+/// contain.
 bool is_exodus(std::string_view bytes) {
   if (bytes.starts_with("CDF\x01") || bytes.starts_with("CDF\x02") || bytes.starts_with("CDF\x05"))
     return true;

@@ -125,7 +125,7 @@ Mesh read_mesh_from(const FilePath& path, const ReadOptions& options = {});
 std::optional<Permutation> write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options,
                                          const Format* format = nullptr);
 
-/// As `write_mesh_to`, for a mesh whose cells are those of the file, in the file's order.
+/// As `write_mesh_to`, for a mesh that `arrange_cells` arranged for `format`, which holds all its cells.
 void write_arranged(const Mesh& mesh, const FilePath& path, const WriteOptions& options,
                     const Format& format);
 

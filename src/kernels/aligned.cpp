@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kCacheLine = 64;
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
 constexpr std::size_t kMinPaged = kHugePage / 2;
-// malloc places all blocks of about this size or larger at the same offset in a page
+// malloc places most blocks from this size on at the same offset in a page
 constexpr std::size_t kMinColoured = std::size_t{64} << 10;
 
 // Large blocks begin at one of this many offsets in a page of 4096 bytes. The offsets are at least kApart

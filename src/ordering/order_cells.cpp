@@ -58,7 +58,7 @@ Permutation permutation_within_classes(std::span<const Index> classes, std::vect
   std::vector<Index> next(start.begin(), start.end() - 1);
   for (Index c = 0; c < index_size(classes); ++c) places[next[classes[c]]++] = c;
 
-  // give the places to the cells in order
+  // give each class's places to its cells
   std::copy(start.begin(), start.end() - 1, next.begin());
   std::vector<Index> old_to_new(classes.size(), -1);
   for (const Index c : cells_in_order) old_to_new[c] = places[next[classes[c]]++];

@@ -37,7 +37,7 @@ struct EnumNames<KernelSet> {
 inline constexpr std::array<std::string_view, kKernels.size()> kKernelTitles{"SpMV", "element force",
                                                                              "assembly", "springs"};
 
-/// The kernels of a matrix.
+/// The kernels that a matrix has.
 inline constexpr std::array kProductsAlone{Kernel::spmv};
 
 /// Returns the kernels that a mesh has, a prefix of kKernels: all of them, or only the product for a matrix

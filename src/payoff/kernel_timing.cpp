@@ -50,7 +50,7 @@ struct Plan {
   int warm_ups = 0;  ///< number of runs before the sample, which are not timed
   /// Duration of the fastest run so far.
   double seconds = std::numeric_limits<double>::infinity();
-  double share = 1;                            ///< of the elements in the only run so far; see KernelTimes
+  double share = 1;  ///< share of the elements that the run covered; see KernelTimes
   std::optional<RunTime> of_first_round = {};  ///< sample of the first round, if it is taken already
 
   [[nodiscard]] bool has_run() const { return !std::isinf(seconds); }

@@ -63,8 +63,8 @@ class Hierarchy {
   template <int M>
   void cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x, CycleWorkspace<M>& workspace) const;
 
-  /// The same by two cycles, or by one on the coarsest level. The result corrects x on the next finer level.
-  /// Overwrites b.
+  /// The same by two cycles, or by one on the coarsest level. The result is to be added to the finer level's
+  /// x. May overwrite b.
   template <int M>
   void two_cycles(int level, VectorBlock<M>& b, VectorBlock<M>& x, VectorBlock<M>& second_x,
                   CycleWorkspace<M>& workspace) const;

@@ -18,7 +18,7 @@ struct BodySurface {
 };
 
 /// Returns the surface of all components of the body, cavities included. The faces of a tetrahedron that has
-/// a negative volume at `points` are turned. Throws InvalidArgument for simplices that are no tetrahedra and
+/// a negative volume at `points` are flipped. Throws InvalidArgument for simplices that are no tetrahedra or
 /// corners that are not among the points. O(n log n).
 BodySurface body_surface(const Simplices& simplices, std::span<const Point> points);
 

@@ -16,7 +16,7 @@ struct ContactForce {
   Point along{};
 };
 
-/// Forces of the contacts of one call, as a first guess for contacts of the next call with the same first
+/// Forces of the contacts of one solve, as a first guess for contacts of the next one with the same first
 /// vertex and obstacle. Contacts may be in any order; of several contacts with the same vertex and
 /// obstacle, the last one counts.
 class RememberedForces {

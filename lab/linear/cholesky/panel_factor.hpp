@@ -32,7 +32,7 @@ struct PanelFactor {
   std::vector<Index> rows;  ///< of all panels: the place of a column or slot
   AlignedVector<Real> values;
   std::vector<PanelTask> tasks;    ///< children before their parents; the last is the root
-  std::vector<Index> above_slots;  ///< for each slot of all tasks: the place in the task above
+  std::vector<Index> above_slots;  ///< for each slot of all tasks: the place that it is added to
 
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(vertex_of_column.size()); }
   /// Returns the number of places of a vector.

@@ -152,7 +152,7 @@ bool touch_only_the_next(const Laplacian& graph, const RowChunks& chunks) {
   return result;
 }
 
-/// Returns the smallest chunks of at least `min_rows` rows that touch only adjacent chunks; else one chunk.
+/// Returns the smallest chunks of at least `min_rows` rows with edges only to adjacent chunks; or one chunk.
 RowChunks sweep_chunks(const Laplacian& graph, Index min_rows) {
   for (Index rows = min_rows; rows < graph.size(); rows *= 2) {
     RowChunks chunks(graph, rows);

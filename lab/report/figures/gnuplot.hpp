@@ -47,8 +47,8 @@ OrderStyle style_of(const StudyResults& results, std::string_view ordering);
 /// Returns a block of inline data, "$NAME << EOD …".
 std::string data_block(std::string_view name, const std::vector<std::string>& lines);
 
-/// Returns a figure's name for one of the study's meshes, "spans-dragon", of lower-case letters, digits and
-/// '-', unique among the meshes.
+/// Returns a figure's name for a mesh, such as "spans-dragon": lower-case letters, digits and '-', unique in
+/// the study.
 std::string figure_name(std::string_view kind, const StudyResults& results, const MeshRecord& mesh);
 
 }  // namespace meshorder

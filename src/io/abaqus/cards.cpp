@@ -263,7 +263,7 @@ std::optional<std::string_view> fields_of(const Card& card) {
   return {};
 }
 
-/// Returns the meaning of the k-th field of a line: n, e or -.
+/// Returns the letter of a line's k-th field, see LineFields: n, e or -.
 char field_at(std::string_view fields, std::size_t k) {
   const bool repeats = fields.ends_with('+');
   const std::size_t given = fields.size() - (repeats ? 1 : 0);

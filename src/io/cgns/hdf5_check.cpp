@@ -42,8 +42,8 @@ class Hdf5Check {
     throw InputError(name_, what, remedy);
   }
 
-  /// Returns an attribute's text; fails unless it is one text of at most `most` bytes, for which libcgns has
-  /// room.
+  /// Returns an attribute's text; fails unless it is one text of at most `most` bytes, the room in
+  /// libcgns.
   [[nodiscard]] std::string text_of(hid_t group, const std::string& path, const char* name,
                                     std::size_t most) const {
     const std::string what = fmt::format("{}: the attribute '{}'", path.empty() ? "/" : path, name);

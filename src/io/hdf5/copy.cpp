@@ -35,7 +35,7 @@ void copy_attribute(hid_t from, const char* name, hid_t to) {
   if (varies) H5Dvlen_reclaim(memory.id(), space.id(), H5P_DEFAULT, bytes.data());
 }
 
-/// Returns the library's flags for the order of links that a group records.
+/// Returns HDF5's flags for how a group records the order of links.
 unsigned order_flags(hid_t group) {
   const Handle creation(H5Gget_create_plist(group), H5Pclose);
   unsigned flags = 0;

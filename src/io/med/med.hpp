@@ -114,7 +114,7 @@ struct MedLayout final : FormatMetadata {
   std::array<std::vector<Family>, 2> families;       ///< by association
   std::vector<Piece> pieces;
   std::vector<Equivalence> equivalences;
-  std::vector<std::string> words;  ///< see `contents`
+  std::vector<std::string> words;  ///< what `contents` returns
 
   [[nodiscard]] std::string mesh_path() const { return "/ENS_MAA/" + mesh; }
   [[nodiscard]] std::string step_path() const { return mesh_path() + "/" + step; }

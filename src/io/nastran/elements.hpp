@@ -43,7 +43,7 @@ const ElementType* element_type(std::string_view name);
 /// Returns whether elements of a type may end after their first `nodes` nodes.
 bool has_size(const ElementType& type, int nodes);
 
-/// Returns the name of the card for such cells of a mesh of another format; an empty text if there is none.
+/// Returns the card for cells of this shape and size from another format; an empty text if there is none.
 std::string_view card_of(Shape shape, int nodes);
 
 /// Returns the place of the k-th vertex of a cell among the nodes of its element. Nastran lists the nodes on

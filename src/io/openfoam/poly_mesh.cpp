@@ -98,7 +98,7 @@ Sides read_sides(const MeshFolder& folder, Notes& notes) {
   FoamFile neighbour(folder.file("neighbour"));
   neighbour.require_class("labelList");
   neighbour.read_labels(sides.neighbour, "neighbour", -1, faces);
-  // old versions list all faces and give faces at the boundary a −1
+  // old versions list all faces, with −1 for those at the boundary
   while (!sides.neighbour.empty() && sides.neighbour.back() < 0) sides.neighbour.pop_back();
   if (sides.neighbour.size() > sides.owner.size()) {
     throw InputError(neighbour.file(),

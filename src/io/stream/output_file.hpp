@@ -76,7 +76,7 @@ class OutputFile {
   /// Completes the file and renames it into place, or adds it to the set of its target.
   void commit() { commit_all(std::span(this, 1)); }
 
-  /// Completes all files and puts them in place together, or adds them to the set of their targets.
+  /// Completes the files; puts them in place together, except those whose target has an OutputSet.
   static void commit_all(std::span<OutputFile> files);
 
  private:

@@ -10,7 +10,7 @@ namespace meshorder {
 
 void write_row_ranges(OutputFile& out, Index count, const std::function<void(Text&, Index, Index)>& rows) {
   constexpr Index kRows = 4096;             // about 100 kB, which a cache holds
-  const Index chunks = 4 * thread_count();  // chunks made before the first of them is written
+  const Index chunks = 4 * thread_count();  // chunks in a batch, which is written when all are made
   if (count <= kRows) {
     Text text;
     rows(text, 0, count);

@@ -34,7 +34,7 @@ inline constexpr std::array<State, 9> kStates{{{"o", "object"},
 inline constexpr std::size_t kMaterial = 1;
 inline constexpr std::size_t kSmoothing = 2;
 
-/// Array of the homogeneous coordinate, for vertices that have one.
+/// Name of the array of homogeneous coordinates, if vertices have them.
 inline constexpr std::string_view kWeight = "obj:weight";
 
 /// Returns the name of an array on cells with `corners` corners. The array has, for each corner, the

@@ -261,8 +261,8 @@ struct Content {
   GatheredVector colors;
   GatheredVector texture;
   GatheredVector face_colors;
-  /// Colours of some faces: for each face, the array and the row of its colour; a null array if the face has
-  /// no colour.
+  /// If `face_colors` is empty: for each face, the array and the row of its colour; a null array for a face
+  /// without a colour.
   std::vector<std::pair<const DataArray*, Index>> color_rows;
   std::vector<const DataArray*> written;
 };

@@ -565,7 +565,7 @@ class Reader {
         element.role == Role::vertices ? Association::vertices : Association::cells;
     const bool all = association == Association::vertices || cell_elements_ == 1;
     for (auto& [length, part] : column.by_length) {
-      if (length == 0) continue;  // the writer knows from the header that the list exists
+      if (length == 0) continue;  // empty lists need no array: the header names them
       std::vector<Index> rows = std::move(part.rows);
       if (!property.is_list && !all) {
         for (Index i = 0; i < element.count; ++i) rows.push_back(first + i);

@@ -82,8 +82,8 @@ void set_attribute(pugi::xml_node element, const char* name, const std::string& 
 /// A function that receives the next part of a text.
 using TakeText = std::function<void(std::string_view part)>;
 
-/// `print` writes `prolog`, the text before the root element, then the XML as it was parsed. `print_indented`
-/// writes a line for each element.
+/// `print` writes `prolog` (all before the root element), then the root element with the white space that was
+/// parsed. `print_indented` indents the elements instead.
 void print(const pugi::xml_document& xml, std::string_view prolog, const TakeText& take);
 void print_indented(const pugi::xml_document& xml, const TakeText& take);
 

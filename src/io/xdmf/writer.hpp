@@ -96,7 +96,7 @@ class Writer {
   void write_topology(const Field& field);
   /// Writes the number of cells, which follows from a field's shape, to the field's Topology.
   void announce_cells_of(const Field& field) const;
-  /// Writes the number of cells to a Topology.
+  /// Updates a Topology's number of cells, if it gives one.
   void announce_cells(pugi::xml_node topology, std::uint64_t cells) const;
   /// Returns whether the cell is a linear wedge whose first triangle faces outward in the file.
   [[nodiscard]] bool is_turned(Index c) const;
