@@ -15,8 +15,9 @@ namespace meshorder {
 /// Judges an order by the figure for the workload: the bandwidth, the entries of the Cholesky factor, the
 /// sectors that a product reads on a graphics processor, or else the edge spans. The bandwidth and the
 /// entries must fall, sectors by at least 10 %. The mean or the geometric mean of the spans must fall by at
-/// least 2 %, and the mean must not grow by more than 5 %. From 100,000 vertices on, a share of jumps that
-/// changes by more than 0.1 decides.
+/// least 2 %, and the mean must not grow by more than 5 %. From 100,000 vertices on, the share of jumps
+/// decides first: it refuses the order if it grows by more than 0.1, and accepts the order if it falls so far
+/// and the workload reads vectors along rows or edges.
 ///
 /// Returns why the vertices should stay where they are, a sentence with the method's name and both figures;
 /// empty if the order is better. O(n + entries).
