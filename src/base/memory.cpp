@@ -2,6 +2,7 @@
 #include "base/memory.hpp"
 
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 
 #if defined(__linux__)
 #include <sys/mman.h>
@@ -106,9 +107,7 @@ void set_memory_limit(std::uint64_t bytes) { given_limit = {bytes, true}; }
 std::optional<std::uint64_t> parse_size(std::string_view text) {
   int bits = 0;
   for (const auto& [letter, bits_of_unit] : kSizeUnits) {
-    const bool upper = !text.empty() && text.back() == letter;
-    const bool lower = !text.empty() && text.back() == letter - 'A' + 'a';
-    if (!upper && !lower) continue;
+    if (text.empty() || lower_case(text.back()) != lower_case(letter)) continue;
     bits = bits_of_unit;
     text.remove_suffix(1);
     break;

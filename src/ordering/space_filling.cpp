@@ -252,7 +252,7 @@ constexpr int kFirstBits = 30;  // leading bits of a point's number along a curv
 /// O(n) if few numbers are equal.
 template <class Key>
 Permutation sorted_along(const PointsView& points, const Key& key) {
-  using Item = ValuedItem<std::uint32_t>;
+  using Entry = ValuedItem<std::uint32_t>;
   const Index n = index_size(points);
   const Lattice lattice = lattice_of(points);
   const int axes = lattice.axes();
@@ -269,15 +269,15 @@ Permutation sorted_along(const PointsView& points, const Key& key) {
   const auto place = [shift](std::uint32_t number) {
     return static_cast<Index>(number >> static_cast<unsigned>(shift));
   };
-  const auto sort_equal = [&](std::span<Item> entries) {
+  const auto sort_equal = [&](std::span<Entry> entries) {
     std::vector<std::pair<std::uint64_t, Index>> whole;
     whole.reserve(entries.size());
-    for (const Item& entry : entries) whole.emplace_back(number_of(entry.item, lattice.bits()), entry.item);
+    for (const Entry& entry : entries) whole.emplace_back(number_of(entry.item, lattice.bits()), entry.item);
     std::ranges::sort(whole);
     for (std::size_t k = 0; k < entries.size(); ++k) entries[k].item = whole[k].second;
   };
-  const auto sort = [&](std::span<Item> entries) {
-    std::ranges::sort(entries, {}, &Item::value);
+  const auto sort = [&](std::span<Entry> entries) {
+    std::ranges::sort(entries, {}, &Entry::value);
     for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
       while (end < entries.size() && entries[end].value == entries[begin].value) ++end;
       if (end - begin > 1) sort_equal(entries.subspan(begin, end - begin));

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/figures/figures.hpp"
 
+#include "base/text.hpp"
 #include "lab/report/figures/gnuplot.hpp"
 
 #include <fmt/format.h>
@@ -35,10 +36,9 @@ const OrderStyle* paper_style(std::string_view ordering) {
 std::string slug(std::string_view text) {
   std::string result;
   for (const char c : text) {
-    const bool upper = c >= 'A' && c <= 'Z';
-    const bool kept = upper || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
-    if (kept) {
-      result += upper ? static_cast<char>(c - 'A' + 'a') : c;
+    const char lower = lower_case(c);
+    if ((lower >= 'a' && lower <= 'z') || (c >= '0' && c <= '9')) {
+      result += lower;
     } else if (!result.ends_with('-')) {
       result += '-';
     }
