@@ -6,6 +6,7 @@
 #ifdef MESHORDER_HAS_HDF5
 #include "io/hdf5/mutex.hpp"
 #endif
+#include "io/stream/descriptor.hpp"
 #include "io/stream/scratch.hpp"
 #include "standard_streams.hpp"
 #include "usage.hpp"
@@ -21,6 +22,7 @@
 #include <array>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <sstream>
 #include <utility>
@@ -108,6 +110,10 @@ int run_and_report(const Program& program, int argc, char** argv) {
     return report_failure(error.what(), error.status);
   } catch (const Error& error) {
     return report_failure(error.what(), error.code() == Code::internal ? kOwnFailure : kBadInput);
+  } catch (const std::filesystem::filesystem_error& error) {
+    const SystemFault fault = system_fault(error.code().value());
+    const std::filesystem::path& place = error.path2().empty() ? error.path1() : error.path2();
+    return report_failure(InputError(place.string(), fault.reason, fault.remedy).what(), kBadInput);
   } catch (const std::bad_alloc&) {
     return report_failure("out of memory", kOwnFailure);
   } catch (const std::exception& error) {

@@ -15,11 +15,15 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <new>
+#include <set>
+#include <system_error>
 #endif
 
 namespace meshorder::command {
@@ -46,6 +50,7 @@ enum : std::uint64_t {
   kMoveBetweenFolders = 1U << 13U,  // of version 2
   kTruncate = 1U << 14U,            // of version 3
   kControlDevices = 1U << 15U,      // of version 5
+  kChange = (kOfVersion1 & ~kRead & ~kExecute) | kMoveBetweenFolders | kTruncate,
 };
 
 struct RulesetAttributes {
@@ -81,11 +86,14 @@ constexpr std::array kSystemFiles{"/usr",
                                   "/dev/random",
                                   "/dev/urandom"};
 
-/// A set of rules for what the process may open.
+}  // namespace
+
+/// A set of rules for what the process may do with files. Everything that no rule allows is denied.
 class Ruleset {
  public:
+  /// Makes a set that denies all that the system can deny.
   Ruleset() {
-    const long version = ::syscall(kCreateRuleset, nullptr, 0, 1);
+    const long version = version_of_system();
     if (version < 1) return;
     RulesetAttributes attributes{kOfVersion1, 0, 0};
     if (version >= 2) attributes.files |= kMoveBetweenFolders;
@@ -93,8 +101,12 @@ class Ruleset {
     if (version >= 4) attributes.network = 3;
     if (version >= 5) attributes.files |= kControlDevices;
     if (version >= 6) attributes.scopes = 3;
-    handled_ = attributes.files;
-    descriptor_ = static_cast<int>(::syscall(kCreateRuleset, &attributes, sizeof attributes, 0));
+    create(attributes);
+  }
+  /// Makes a set that denies these actions, if the system can deny them all.
+  explicit Ruleset(std::uint64_t denied) {
+    constexpr long kWithTruncate = 3;
+    if (version_of_system() >= kWithTruncate) create({denied, 0, 0});
   }
   ~Ruleset() {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -117,14 +129,23 @@ class Ruleset {
     if (descriptor >= 0) ::close(descriptor);
   }
 
-  void enforce() const noexcept {
-    if (descriptor_ >= 0) (void)::syscall(kRestrictSelf, descriptor_, 0);
+  [[nodiscard]] bool is_possible() const noexcept { return descriptor_ >= 0; }
+  [[nodiscard]] bool enforce() const noexcept {
+    return descriptor_ >= 0 && ::syscall(kRestrictSelf, descriptor_, 0) == 0;
   }
 
  private:
+  static long version_of_system() noexcept { return ::syscall(kCreateRuleset, nullptr, 0, 1); }
+  void create(const RulesetAttributes& attributes) noexcept {
+    handled_ = attributes.files;
+    descriptor_ = static_cast<int>(::syscall(kCreateRuleset, &attributes, sizeof attributes, 0));
+  }
+
   int descriptor_ = -1;
   std::uint64_t handled_ = 0;
 };
+
+namespace {
 
 void restrict_files(const Reach& reach) noexcept {
   const Ruleset rules;
@@ -136,7 +157,26 @@ void restrict_files(const Reach& reach) noexcept {
     rules.allow(path,
                 (kOfVersion1 & ~kMakeDevices & ~kMakeLinks & ~kExecute) | kMoveBetweenFolders | kTruncate);
   }
-  rules.enforce();
+  (void)rules.enforce();
+}
+
+/// Allows changes to everything below a folder but the paths of `denied`, which are below it.
+void allow_changes(const Ruleset& rules, const fs::path& folder, const std::vector<fs::path>& denied) {
+  std::set<fs::path> on_the_way;  // entries of the folder that are denied or contain what is
+  for (const fs::path& path : denied) on_the_way.insert(folder / *path.lexically_relative(folder).begin());
+  std::error_code code;
+  for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+    std::error_code ignored;
+    if (!on_the_way.contains(entry->path()) && !entry->is_symlink(ignored))
+      rules.allow(entry->path(), kChange);
+  }
+  for (const fs::path& path : on_the_way) {
+    std::vector<fs::path> below;
+    std::ranges::copy_if(denied, std::back_inserter(below), [&](const fs::path& other) {
+      return *other.lexically_relative(path).begin() != "..";
+    });
+    if (std::ranges::find(below, path) == below.end()) allow_changes(rules, path, below);
+  }
 }
 
 // ---- seccomp
@@ -297,11 +337,39 @@ void give_up_rights(const Reach& reach) noexcept {
     // access to files is restricted nevertheless
   }
 }
+
+WriteProtection::WriteProtection(const std::vector<fs::path>& originals, const fs::path& allowed)
+    : rules_(std::make_unique<const Ruleset>(kChange)) {
+  if (!rules_->is_possible()) return;
+  std::vector<fs::path> denied;
+  for (const fs::path& original : originals) denied.push_back(fs::canonical(original));
+  if (std::ranges::find(denied, "/") == denied.end()) {
+    allow_changes(*rules_, "/", denied);
+  } else {
+    rules_->allow("/dev", kChange);
+  }
+  rules_->allow(allowed, kChange);
+}
+
+bool WriteProtection::is_possible() const noexcept { return rules_->is_possible(); }
+
+bool WriteProtection::enforce() const noexcept {
+  return ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && rules_->enforce();
+}
 #else
+class Ruleset {};
+
 void give_up_rights(const Reach& /*reach*/) noexcept {
   const struct rlimit none {};
   (void)::setrlimit(RLIMIT_CORE, &none);
 }
+
+WriteProtection::WriteProtection(const std::vector<std::filesystem::path>& /*originals*/,
+                                 const std::filesystem::path& /*allowed*/) {}
+bool WriteProtection::is_possible() const noexcept { return false; }
+bool WriteProtection::enforce() const noexcept { return false; }
 #endif
+
+WriteProtection::~WriteProtection() = default;
 
 }  // namespace meshorder::command

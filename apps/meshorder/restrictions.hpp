@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <vector>
 
 namespace meshorder::command {
@@ -24,5 +25,33 @@ struct Reach {
 /// Also disables core files. Rights that the system cannot restrict remain. Call it while there is one
 /// thread.
 void give_up_rights(const Reach& reach) noexcept;
+
+class Ruleset;
+
+/// Rules by which a program can write to no file of some originals (Landlock, from Linux 6.2 on). The program
+/// cannot write, cut, add, rename or remove anything below them; to change a mode or a time stays possible.
+/// In the folders that contain an original, the program cannot add, rename or remove entries, either.
+class WriteProtection {
+ public:
+  /// @param originals  files and folders
+  /// @param allowed    a folder that may be written to even if it is below an original
+  WriteProtection(const std::vector<std::filesystem::path>& originals, const std::filesystem::path& allowed);
+  ~WriteProtection();
+  WriteProtection(const WriteProtection&) = delete;
+  WriteProtection(WriteProtection&&) = delete;
+  WriteProtection& operator=(const WriteProtection&) = delete;
+  WriteProtection& operator=(WriteProtection&&) = delete;
+
+  /// Returns whether the system can enforce the rules.
+  [[nodiscard]] bool is_possible() const noexcept;
+
+  /// Enforces the rules on this process and on the programs that it starts, for good. They cannot get the
+  /// rights of another user, either (sudo). Returns whether it succeeded; `errno` then says why not. Calls
+  /// only functions that are safe after a fork.
+  [[nodiscard]] bool enforce() const noexcept;
+
+ private:
+  std::unique_ptr<const Ruleset> rules_;
+};
 
 }  // namespace meshorder::command

@@ -13,11 +13,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -30,9 +32,17 @@ constexpr double kLeastTime = 1e-6;
 
 /// Returns a word of the command line with the mesh in place of {}, its name without extension in place of
 /// {stem}, and the path for outputs in place of {out}.
-std::string with_places(const std::string& word, const TrialSubject& subject, const TrialFolder& folder) {
-  return replaced(replaced(replaced(word, "{out}", folder.output().string()), "{stem}", subject.stem()), "{}",
-                  subject.name());
+std::string with_places(std::string_view word, const TrialSubject& subject, const TrialFolder& folder) {
+  const std::array<std::pair<std::string_view, std::string>, 3> places{
+      std::pair{"{}", subject.name()}, {"{stem}", subject.stem()}, {"{out}", folder.output().string()}};
+  std::string result;
+  while (!word.empty()) {
+    const auto place =
+        std::ranges::find_if(places, [&](const auto& pair) { return word.starts_with(pair.first); });
+    result += place == places.end() ? std::string(1, word.front()) : place->second;
+    word.remove_prefix(place == places.end() ? 1 : place->first.size());
+  }
+  return result;
 }
 
 /// Reads the times, counts and results of a program from its printed output and its files.
@@ -101,7 +111,7 @@ class Trial {
         subject_(subject),
         progress_(progress),
         program_(find_program(options.command.front())),
-        folder_(subject.folder(options.with)),
+        folder_(subject.folder(options.with, !options.is_unprotected)),
         readings_(options, subject, folder_) {
     report_.command = options.command;
     report_.time = options.time;
@@ -140,7 +150,9 @@ class Trial {
     TrialCommand result{.words = {program_},
                         .folder = folder_.run(),
                         .log = folder_.log(),
-                        .timeout_seconds = options_.timeout_seconds};
+                        .timeout_seconds = options_.timeout_seconds,
+                        .temporary = folder_.temporary(),
+                        .protection = folder_.protection()};
     for (auto word = options_.command.begin() + 1; word != options_.command.end(); ++word)
       result.words.push_back(with_places(*word, subject_, folder_));
     return result;
@@ -161,7 +173,8 @@ class Trial {
     }
     double time = std::max(options_.time == "wall" ? run.wall_seconds : run.processor_seconds, kLeastTime);
     try {
-      if (!run.succeeded()) throw InvalidArgument(failure_of(run, command) + remedy());
+      if (!run.succeeded()) throw InvalidArgument(with_remedy(failure_of(run, command)));
+      if (!folder_.was_read(number)) throw InvalidArgument(with_remedy(fault_of_reading()));
       const std::string found = readings_.read(order, time);
       order.is_different = !found.empty();
       if (order.is_different) throw InvalidArgument("the results differ: " + found);
@@ -195,16 +208,32 @@ class Trial {
     (void)timed_run(number, kept);
     order.times.clear();
     if (const std::string line = error_line(folder_.log()); !line.empty() && !has_error_note_) {
-      notes_.push_back(fmt::format("the program printed '{}': did it read the mesh?{}", line, remedy()));
+      notes_.push_back(with_remedy(fmt::format("the program printed '{}': did it read the mesh?", line)));
       has_error_note_ = true;
     }
   }
 
-  /// Returns a remedy if the command names the mesh with .inp, which CalculiX adds itself; else "".
-  [[nodiscard]] std::string remedy() const {
+  /// Returns the fault of a program that did not read the mesh, with the error that it printed.
+  [[nodiscard]] std::string fault_of_reading() const {
+    const std::string line = error_line(folder_.log());
+    return fmt::format("it did not read its copy of the mesh, {}; have it read {{}}{}",
+                       subject_.name() == "." ? "constant/polyMesh" : subject_.name(),
+                       line.empty() ? "" : fmt::format("; it printed '{}'", line));
+  }
+
+  /// Returns a fault of the program, with a remedy if the fault is known: CalculiX adds .inp to a name; a
+  /// protected program cannot write to the originals.
+  [[nodiscard]] std::string with_remedy(const std::string& fault) const {
     const bool is_calculix = fs::path(program_).filename().string().starts_with("ccx");
-    if (!is_calculix || !std::ranges::count(options_.command, "{}")) return {};
-    return " (CalculiX adds .inp by itself: write {stem} in place of {})";
+    if (is_calculix && std::ranges::count(options_.command, "{}") > 0)
+      return fault + " (CalculiX adds .inp by itself: write {stem} in place of {})";
+    const bool is_denied = fault.find("ermission denied") != std::string::npos ||
+                           fault.find("peration not permitted") != std::string::npos;
+    if (is_denied && folder_.protection() != nullptr)
+      return fault +
+             " (the program cannot write to the folder of the mesh, nor add files to the folders above: have "
+             "it write to {out}, or allow it by --unprotected)";
+    return fault;
   }
 
   void refuse_if_all_fail() const {
@@ -357,10 +386,17 @@ class Trial {
 TrialReport run_trial(const TrialSubject& subject, const TrialOptions& options, Progress& progress,
                       Notes& notes) {
   const TrialSignals signals;
-  Trial trial(subject, options, progress);
-  trial.run();
-  notes.insert(notes.end(), trial.notes().begin(), trial.notes().end());
-  return trial.report();
+  try {
+    Trial trial(subject, options, progress);
+    trial.run();
+    notes.insert(notes.end(), trial.notes().begin(), trial.notes().end());
+    return trial.report();
+  } catch (const fs::filesystem_error& error) {
+    if (error.code() != std::errc::no_space_on_device) throw;
+    throw InputError(
+        fs::temp_directory_path().string(), "the disk is full",
+        "set TMPDIR to a folder with more room, or name the files that the program needs by --with");
+  }
 }
 
 }  // namespace meshorder::command

@@ -24,6 +24,7 @@ struct TrialOptions {
   double tolerance = 1e-6;
   double budget_seconds = 120;
   double timeout_seconds = 600;
+  bool is_unprotected = false;  ///< the program may write to the originals by their full paths
 };
 
 /// Runs a program in several orders. Throws InvalidArgument for faulty options, and if the subject's own

@@ -3,6 +3,7 @@
 
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
+#include "io/stream/descriptor.hpp"
 #include "payoff/quantities.hpp"
 #include "program_output.hpp"
 #include <meshorder/error.hpp>
@@ -31,7 +32,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kEndings{SIGINT, SIGTERM, SIGHUP};
 constexpr int kCannotExecute = 127;
 
 bool is_executable(const fs::path& path) {
@@ -44,11 +44,23 @@ double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + kMicro * static_cast<double>(time.tv_usec);
 }
 
+/// Returns the signals that end a process unless it handles them, without SIGKILL and those of its own
+/// faults.
+std::vector<int> ending_signals() {
+  std::vector<int> signals{SIGINT,  SIGTERM, SIGHUP,    SIGQUIT, SIGUSR1, SIGUSR2,
+                           SIGPIPE, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGXFSZ};
+#ifdef __linux__
+  signals.insert(signals.end(), {SIGIO, SIGPWR});
+  for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) signals.push_back(signal);
+#endif
+  return signals;
+}
+
 sigset_t awaited_signals() {
   sigset_t signals;
   ::sigemptyset(&signals);
   ::sigaddset(&signals, SIGCHLD);
-  for (const int signal : kEndings) {
+  for (const int signal : ending_signals()) {
     struct sigaction now {};  // ignored signals, as under nohup, do not end a trial
     if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler != SIG_IGN) ::sigaddset(&signals, signal);
   }
@@ -65,7 +77,7 @@ int wait_for_signal(const sigset_t& signals) {
   (void)::nanosleep(&kStep, nullptr);
   sigset_t pending;
   ::sigpending(&pending);
-  for (const int signal : kEndings) {
+  for (const int signal : ending_signals()) {
     if (::sigismember(&signals, signal) == 1 && ::sigismember(&pending, signal) == 1) return signal;
   }
   return 0;
@@ -94,24 +106,33 @@ struct Prepared {
       : folder(command.folder.string()),
         out(command.log.string() + ".out"),
         err(command.log.string() + ".err"),
-        directory("PWD=" + folder) {
+        directory("PWD=" + folder),
+        temporary("TMPDIR=" + command.temporary.string()),
+        protection(command.protection) {
     for (const std::string& word : command.words) words.push_back(word.c_str());
     words.push_back(nullptr);
+    const bool has_temporary = !command.temporary.empty();
     for (char** entry = environ; *entry != nullptr; ++entry) {
-      if (!std::string_view(*entry).starts_with("PWD=")) environment.push_back(*entry);
+      const std::string_view variable = *entry;
+      if (variable.starts_with("PWD=") || variable.starts_with("OLDPWD=")) continue;
+      if (!has_temporary || !variable.starts_with("TMPDIR=")) environment.push_back(*entry);
     }
     environment.push_back(directory.c_str());
+    if (has_temporary) environment.push_back(temporary.c_str());
     environment.push_back(nullptr);
   }
   std::string folder;
   std::string out;
   std::string err;
   std::string directory;
+  std::string temporary;
+  const WriteProtection* protection;
   std::vector<const char*> words;
   std::vector<const char*> environment;
 };
 
-[[noreturn]] void become(const Prepared& prepared, const sigset_t& signals_before, pid_t parent, int report) {
+/// Puts this child into a process group of its own, and lets it end with its parent.
+void begin_child(pid_t parent) {
   (void)::setpgid(0, 0);
 #ifdef __linux__
   (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -119,6 +140,9 @@ struct Prepared {
 #else
   (void)parent;
 #endif
+}
+
+[[noreturn]] void become(const Prepared& prepared, const sigset_t& signals_before, int report) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGCHLD, SIGXFSZ})
     (void)std::signal(signal, SIG_DFL);
   if (::chdir(prepared.folder.c_str()) != 0) give_up(report);
@@ -126,6 +150,7 @@ struct Prepared {
   constexpr int kAnew = O_WRONLY | O_CREAT | O_TRUNC;
   open_as(prepared.out.c_str(), kAnew, STDOUT_FILENO, report);
   open_as(prepared.err.c_str(), kAnew, STDERR_FILENO, report);
+  if (prepared.protection != nullptr && !prepared.protection->enforce()) give_up(report);
   ::sigprocmask(SIG_SETMASK, &signals_before, nullptr);
   // NOLINTBEGIN(cppcoreguidelines-pro-type-const-cast): execve changes neither
   ::execve(prepared.words.front(), const_cast<char* const*>(prepared.words.data()),
@@ -171,7 +196,11 @@ class Processes {
     return has_ended;
   }
 
-  void kill_program() const { ::kill(-program_, SIGKILL); }
+  /// Kills the program, which may have left its process group, and what is in this group.
+  void kill_program() const {
+    ::kill(-program_, SIGKILL);
+    ::kill(program_, SIGKILL);
+  }
 
   /// Kills the processes that the program left running, also outside its process group, and counts them.
   void end_others(TrialRun& run) const {
@@ -219,6 +248,37 @@ int await(const Processes& processes, double timeout_seconds, TrialRun& run) {
   return interruption;
 }
 
+/// Starts a child, which calls `work`; returns its number. Throws Unavailable.
+template <class Work>
+pid_t start_child(Work work) {
+  const pid_t parent = ::getpid();
+  const pid_t child = ::fork();
+  if (child == 0) {
+    begin_child(parent);
+    work();
+    ::_exit(0);
+  }
+  if (child < 0) {
+    throw Unavailable(
+        fmt::format("no process can be started: {}; end other programs, or raise the limit on "
+                    "processes (ulimit -u)",
+                    std::strerror(errno)));
+  }
+  (void)::setpgid(child, child);
+  return child;
+}
+
+/// Waits for a child and ends its descendants. If a signal came, leaves it pending and throws Interrupted.
+TrialRun finish(pid_t child, double timeout_seconds) {
+  TrialRun run;
+  const Processes processes(child);
+  const int interruption = await(processes, timeout_seconds, run);
+  processes.end_others(run);
+  if (interruption == 0) return run;
+  ::raise(interruption);  // the signal is blocked, so it stays pending
+  throw Interrupted();
+}
+
 }  // namespace
 
 TrialSignals::TrialSignals() {
@@ -249,41 +309,35 @@ std::string find_program(const std::string& name) {
 
 TrialRun run_program(const TrialCommand& command) {
   const Prepared prepared(command);
-  std::array<int, 2> report{};
-  if (::pipe(report.data()) != 0 || ::fcntl(report[1], F_SETFD, FD_CLOEXEC) != 0)
-    throw InternalError(fmt::format("no pipe can be made: {}", std::strerror(errno)));
+  std::array<int, 2> ends{};
+  if (::pipe(ends.data()) != 0)
+    throw Unavailable(fmt::format("no pipe can be made: {}", std::strerror(errno)));
+  const Descriptor report(ends[0]);
+  Descriptor to_report(ends[1]);
+  for (const int end : ends) (void)::fcntl(end, F_SETFD, FD_CLOEXEC);
   sigset_t signals_before;
   ::pthread_sigmask(SIG_SETMASK, nullptr, &signals_before);
-  for (const int signal : kEndings) ::sigdelset(&signals_before, signal);
+  for (const int signal : ending_signals()) ::sigdelset(&signals_before, signal);
   ::sigdelset(&signals_before, SIGCHLD);
-  const pid_t parent = ::getpid();
-  const pid_t child = ::fork();
-  if (child == 0) {
-    ::close(report[0]);
-    become(prepared, signals_before, parent, report[1]);
-  }
-  const int fork_error = errno;
-  ::close(report[1]);
-  if (child < 0) {
-    ::close(report[0]);
-    throw InternalError(fmt::format("no process can be started: {}", std::strerror(fork_error)));
-  }
-  (void)::setpgid(child, child);
-  TrialRun run;
-  const Processes processes(child);
-  const int interruption = await(processes, command.timeout_seconds, run);
-  processes.end_others(run);
+  const pid_t child = start_child([&] { become(prepared, signals_before, to_report.get()); });
+  to_report.close();
+  TrialRun run = finish(child, command.timeout_seconds);
   int error = 0;
-  const bool was_executed = ::read(report[0], &error, sizeof error) != sizeof error;
-  ::close(report[0]);
-  if (interruption != 0) {
-    ::raise(interruption);  // the signal is blocked, so it stays pending
-    throw Interrupted();
-  }
-  if (!was_executed)
+  if (::read(report.get(), &error, sizeof error) == sizeof error)
     throw InvalidArgument(
         fmt::format("{}: it cannot be executed: {}", command.words.front(), std::strerror(error)));
   return run;
+}
+
+TrialRun run_in_child(const std::function<void()>& work, double timeout_seconds) {
+  const pid_t child = start_child([&] {
+    try {
+      work();
+    } catch (...) {
+      ::_exit(kCannotExecute);
+    }
+  });
+  return finish(child, timeout_seconds);
 }
 
 std::string failure_of(const TrialRun& run, const TrialCommand& command) {

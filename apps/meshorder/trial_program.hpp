@@ -1,11 +1,14 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "restrictions.hpp"
+
 #include <sys/types.h>
 
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -17,9 +20,10 @@ struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// While this object exists, SIGINT, SIGTERM and SIGHUP are blocked: `run_program` notices them, throws
-/// Interrupted and leaves them pending; they take effect when the object is destroyed. On Linux, descendants
-/// that lose their parent become children of this process, for good.
+/// While this object exists, the signals that end a process are blocked, except those of its own faults
+/// (SIGSEGV and others) and SIGKILL. `run_program` and `run_in_child` notice them, throw Interrupted and
+/// leave them pending; they take effect when the object is destroyed. On Linux, descendants that lose their
+/// parent become children of this process, for good.
 class TrialSignals {
  public:
   TrialSignals();
@@ -35,10 +39,12 @@ class TrialSignals {
 
 /// A program with its arguments and limits.
 struct TrialCommand {
-  std::vector<std::string> words;  ///< the first word as `find_program` returns it
-  std::filesystem::path folder;    ///< its current directory
-  std::filesystem::path log;       ///< prefix of the files that receive what it prints: log.out, log.err
-  double timeout_seconds = 0;      ///< elapsed time; 0: no limit
+  std::vector<std::string> words;     ///< the first word as `find_program` returns it
+  std::filesystem::path folder;       ///< its current directory
+  std::filesystem::path log;          ///< prefix of the files that receive what it prints: log.out, log.err
+  double timeout_seconds = 0;         ///< elapsed time; 0: no limit
+  std::filesystem::path temporary{};  ///< its TMPDIR; empty: that of this process
+  const WriteProtection* protection = nullptr;  ///< if not null, enforced on it
 };
 
 /// Result of a run.
@@ -60,8 +66,12 @@ std::string find_program(const std::string& name);
 
 /// Runs a program in a process group of its own, without a shell and with an empty standard input. Waits for
 /// the program and kills the processes that it left running. Throws InvalidArgument if the program cannot be
-/// executed, InternalError if no process can be started, Interrupted at a signal.
+/// executed, Unavailable if no process can be started, Interrupted at a signal.
 TrialRun run_program(const TrialCommand& command);
+
+/// Calls `work` in a child process, for work that may not end or may crash. Throws Unavailable and
+/// Interrupted as `run_program`; the child ends without a status if `work` throws.
+TrialRun run_in_child(const std::function<void()>& work, double timeout_seconds);
 
 /// Returns why a run failed: "exit status 3: *ERROR in readinput …". The line is the last that reports an
 /// error, else the last on stderr, else the last on stdout.

@@ -78,8 +78,12 @@ class TriedMesh final : public TrialSubject {
   [[nodiscard]] std::string name() const override { return fs::path(path_).filename().string(); }
   [[nodiscard]] std::string stem() const override { return fs::path(path_).stem().string(); }
 
-  [[nodiscard]] TrialFolder folder(const std::vector<std::string>& with) const override {
-    return {fs::absolute(path_).parent_path(), name(), with};
+  [[nodiscard]] std::vector<fs::path> originals() const override {
+    return {path_, fs::absolute(path_).parent_path()};
+  }
+
+  [[nodiscard]] TrialFolder folder(const std::vector<std::string>& with, bool is_protected) const override {
+    return {fs::absolute(path_).parent_path(), name(), with, is_protected};
   }
 
   [[nodiscard]] std::vector<std::string> orders() const override {
@@ -175,14 +179,18 @@ class TriedCase final : public TrialSubject {
     return fs::absolute(path_).lexically_normal().filename().string();
   }
 
-  [[nodiscard]] TrialFolder folder(const std::vector<std::string>& with) const override {
+  [[nodiscard]] std::vector<fs::path> originals() const override {
+    return {path_, fs::path(path_) / "constant", fs::path(path_) / "constant" / "polyMesh"};
+  }
+
+  [[nodiscard]] TrialFolder folder(const std::vector<std::string>& with, bool is_protected) const override {
     if (is_decomposed(path_) && (with.empty() || std::ranges::any_of(with, is_of_process))) {
       throw InputError(
           path_,
           "it has a mesh in constant and others in processor folders; only the mesh in constant can be tried",
           "if the program reads this mesh, name the folders that it needs, as in --with 0,constant,system");
     }
-    return {path_, "", with};
+    return {path_, "", with, is_protected};
   }
 
   [[nodiscard]] std::vector<std::string> orders() const override {
@@ -199,8 +207,10 @@ class TriedCase final : public TrialSubject {
   bool make(TriedOrder& order, TrialFolder& folder, std::size_t number) const override {
     const std::string copy = folder.add_order(number).string();
     folder.copy_files(number);
-    TrialCommand renumber{
-        .words = {renumber_mesh_, "-case", copy, "-overwrite"}, .folder = copy, .log = folder.log()};
+    TrialCommand renumber{.words = {renumber_mesh_, "-case", copy, "-overwrite"},
+                          .folder = copy,
+                          .log = folder.log(),
+                          .protection = folder.protection()};
     const std::string own = fmt::format("{} -case {} -overwrite", kRenumberMesh, in_shell(path_));
     bool is_own = false;
     if (order.name == kRenumberMesh) {

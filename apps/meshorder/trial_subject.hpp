@@ -19,8 +19,11 @@ class TrialSubject : public Polymorphic {
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual std::string stem() const = 0;
 
-  /// Returns a new folder with a copy of the subject.
-  [[nodiscard]] virtual TrialFolder folder(const std::vector<std::string>& with) const = 0;
+  /// Returns the files and folders that the command must not name, because {} stands for their copies.
+  [[nodiscard]] virtual std::vector<std::filesystem::path> originals() const = 0;
+
+  /// Returns a new folder with a copy of the subject, as the constructor of TrialFolder.
+  [[nodiscard]] virtual TrialFolder folder(const std::vector<std::string>& with, bool is_protected) const = 0;
 
   /// Returns the orders that are tried if the user names none.
   [[nodiscard]] virtual std::vector<std::string> orders() const = 0;

@@ -19,6 +19,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -47,6 +48,39 @@ void check_program(const TryArguments& arguments) {
                   in_shell(arguments.input), is_case ? "icoFoam" : "solver {}"));
 }
 
+/// Returns the first path in a word that leads to one of the originals, as in --mesh=PATH or -oPATH; "" if
+/// none does.
+std::string original_in(const std::string& word, const std::vector<fs::path>& originals) {
+  constexpr std::string_view kBetween = " \t\n=:,;@(){}'\"<>|&";
+  const auto leads_there = [&](const std::string& path) {
+    return std::ranges::any_of(originals, [&](const fs::path& original) {
+      std::error_code ignored;
+      return fs::equivalent(path, original, ignored);
+    });
+  };
+  for (std::size_t at = word.find('/'); at != std::string::npos; at = word.find('/', at + 1)) {
+    const bool is_after_letter = at == 2 && word.front() == '-';
+    if (at > 0 && !is_after_letter && kBetween.find(word[at - 1]) == std::string_view::npos) continue;
+    for (std::size_t end = at; end != std::string::npos;) {
+      end = word.find_first_of(kBetween, end + 1);
+      if (std::string path = word.substr(at, end - at); leads_there(path)) return path;
+    }
+  }
+  return {};
+}
+
+/// Throws if a word of the command names an original: each run would then read or write that, and not a copy.
+void check_that_no_original_is_named(const TrialOptions& options, const TrialSubject& subject) {
+  const std::vector<fs::path> originals = subject.originals();
+  for (auto word = options.command.begin() + 1; word != options.command.end(); ++word) {
+    const std::string path = original_in(*word, originals);
+    if (path.empty()) continue;
+    const bool is_folder = subject.name() != "." && fs::is_directory(path);
+    throw InvalidArgument(fmt::format("{}: each run needs its own copy of it; write {} in its place", path,
+                                      is_folder ? ". (the folder of the copy)" : "{}"));
+  }
+}
+
 /// Throws unless the command names the mesh (not needed for a case) and --keep is a new or empty folder.
 void check_command(const TrialOptions& options, const TrialSubject& subject) {
   if (subject.name() != "." &&
@@ -68,6 +102,7 @@ void run(const TryArguments& arguments) {
   const std::unique_ptr<TrialSubject> subject =
       trial_subject(arguments.input, {arguments.threads, arguments.ids, arguments.to_order});
   check_command(arguments, *subject);
+  check_that_no_original_is_named(arguments, *subject);
   for (const std::string& name : arguments.methods) subject->check_order(name);
   std::optional<OutputFile> page;  // throws, before anything runs, if the page cannot be written
   if (!arguments.page.empty()) {
@@ -171,6 +206,10 @@ void add_trial_options(CLI::App& subcommand, TryArguments& arguments) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAMES");
+  subcommand.add_flag(
+      "--unprotected", arguments.is_unprotected,
+      "Let the program write wherever you may: for sudo, containers, and programs that write\n"
+      "to the folder of the mesh by its full path. A change of an original ends the trial");
 }
 
 }  // namespace
@@ -187,7 +226,8 @@ void add_try(CLI::App& subcommand) {
       "Run a program of yours on a mesh as it is and in other orders, and say in which it runs faster.\n"
       "The program comes after --. In its arguments, {} is replaced by the mesh, {stem} by its name\n"
       "without extension, and {out} by a path for outputs. It runs without a shell, in a private\n"
-      "folder with copies of the files beside the mesh; nothing of yours is changed.\n"
+      "folder with copies of the files beside the mesh. On Linux 6.2 and later, it cannot write to the\n"
+      "folder of the mesh and to what links in it lead to, nor add files to the folders above.\n"
       "MESH may be the folder of an OpenFOAM case: the program then runs in copies of it.");
   subcommand.footer(
       "Examples:\n"

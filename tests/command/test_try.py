@@ -98,7 +98,8 @@ def solver(in_order, as_it_is):
 
 
 def shell(script):
-    return ("--", "/bin/sh", "-c", script, "sh", "{}")
+    """A script that reads the mesh."""
+    return ("--", "/bin/sh", "-c", f"cat $1 > /dev/null; {script}", "sh", "{}")
 
 
 def by_name(result):
@@ -172,7 +173,8 @@ def test_counts_are_the_last_that_are_printed(folder):
 
 def test_times_agree_with_ratios(folder, tmp_path):
     """Each run is shorter than the one before: medians over different numbers of rounds do not give the ratio."""
-    log = tmp_path / "runs"
+    (tmp_path / "log").mkdir()
+    log = tmp_path / "log" / "runs"
     script = f'echo >> {log}; runs=$(wc -l < {log}); echo seconds: $((1000000 / (runs + 10)))'
     result = folder.json("mesh.mesh", "--methods", "rcm,hilbert,scrambled,bfs", "--time", r"seconds: (\S+)", "--budget",
                          "3", "--json", *shell(script))
@@ -208,7 +210,8 @@ def test_results_must_agree(folder):
 
 def test_an_order_whose_results_differ_gives_its_place_to_others(folder, tmp_path):
     """The budget suffices for one order besides the mesh's own."""
-    log = tmp_path / "runs"
+    (tmp_path / "log").mkdir()
+    log = tmp_path / "log" / "runs"
     script = f"echo >> {log}; sleep 0.3; test $(wc -l < {log}) {{}} && echo sum 12 || echo sum 10"
     judged = ("--same", r"sum (\S+)")
     result = folder.json("mesh.mesh", *judged, "--budget", "4", "--json", *shell(script.format("= 2")))
@@ -238,14 +241,14 @@ def test_sums_that_are_zero_but_for_rounding_agree(folder, own, other, agree):
 
 def test_files_must_agree(folder):
     arguments = ("mesh.mesh", "--methods", "rcm", "--budget", "1", "--json")
-    write = 'echo "total 1.0000001 ok" > result.txt; cp result.txt $2'
+    write = 'cat $1 > /dev/null; echo "total 1.0000001 ok" > result.txt; cp result.txt $2'
     command = ("--", "/bin/sh", "-c", write, "sh", "{}", "{out}")
     assert folder.json(*arguments, "--same-file", "result.txt", *command)
     assert folder.json(*arguments, "--same-file", "{out}", *command)
     assert "writes no file other.txt" in folder.fails(*arguments, "--same-file", "other.txt", *command)
     assert folder.json(*arguments, "--same-file", "{stem}.dat", *shell("echo 1 > mesh.dat"))
     assert folder.json(*arguments, "--same-file", "{}.dat", *shell("echo 1 > mesh.mesh.dat"))
-    assert folder.json(*arguments, "--same-file", "{out}/a", "--", "/bin/sh", "-c", "mkdir $2; echo 1 > $2/a", "sh", "{}",
+    assert folder.json(*arguments, "--same-file", "{out}/a", "--", "/bin/sh", "-c", "cat $1; mkdir $2; echo 1 > $2/a", "sh", "{}",
                        "{out}")
     assert "in the folder" in folder.fails(*arguments, "--same-file", "../x", *command)
     assert "results differ" in folder.fails(*arguments, "--same-file", "copy", *shell("cp $1 copy"))
@@ -278,23 +281,110 @@ def test_named_files_alone_are_copied(folder):
     assert "--with nothing.txt" in folder.fails("mesh.mesh", "--with", "nothing.txt", *shell(script))
 
 
-def test_a_large_file_that_the_program_writes_is_noticed(folder):
+def landlock_version():
+    import ctypes
+    return ctypes.CDLL(None).syscall(444, None, 0, 1)
+
+
+protected = pytest.mark.skipif(landlock_version() < 3, reason="needs Linux 6.2")
+
+
+def test_an_earlier_result_that_the_program_writes_anew_stays(folder):
+    """Also if it is large, or if a link leads to it."""
+    elsewhere = folder.path.parent / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / "old.txt").write_text("old")
+    (elsewhere / "self").symlink_to(".")
+    (folder.path / "results").symlink_to(elsewhere)
+    (folder.path / "linked.txt").symlink_to(elsewhere / "old.txt")
+    os.link(elsewhere / "old.txt", folder.path / "hard.txt")
+    with open(folder.path / "mesh.frd", "wb") as large:
+        large.write(os.urandom(1000))
+        large.truncate(70 << 20)
+    folder.before = folder.contents()
+    script = ("test $(cat results/old.txt linked.txt hard.txt) = oldoldold || exit 3; "
+              "for file in mesh.frd linked.txt hard.txt; do echo new > $file || exit 4; done; "
+              "rm -r results/* && echo new > results/new.txt")
+    assert folder.json("mesh.mesh", "--methods", "rcm", "--budget", "1", "--json", *shell(script))
+    assert [path.name for path in elsewhere.glob("*.txt")] == ["old.txt"]
+    assert (elsewhere / "old.txt").read_text() == "old"
+
+
+def test_what_is_too_large_to_copy_is_read_but_not_written(folder):
     with open(folder.path / "large", "wb") as large:
-        large.truncate(65 << 20)
-    done = folder.command.run("try", "mesh.mesh", *shell("echo >> large"), env=folder.environment)
-    assert done.returncode == 2 and "changed while the program ran" in done.stderr
+        large.truncate(3 << 30)
+
+    def run(script, *options):
+        return folder.command.run("try", "mesh.mesh", "--methods", "rcm", "--budget", "1", *options, *shell(script),
+                                  env=folder.environment)
+
+    refused = run("true", "--unprotected")
+    assert refused.returncode == 2 and "too large to copy" in refused.stderr and "--with" in refused.stderr
+    denied = run("head -c 9 large; echo >> large")
+    assert denied.returncode == 2 and (folder.path / "large").stat().st_size == 3 << 30
+    if landlock_version() >= 3:
+        assert "Permission denied" in denied.stderr and "write to {out}" in denied.stderr
+        assert run("head -c 9 large").returncode == 0
+    (folder.path / "large").unlink()
+    folder.check_untouched()
+
+
+ATTACKS = ["echo >> mesh.mesh", "rm mesh.mesh", "echo > new", "mkdir new", "ln mesh.mesh {out}", "mv solver.py {out}",
+           "mv . {out}", "truncate -s 1 mesh.mesh", "cd /proc/$PPID/cwd && echo > new", "ln -s / new"]
+
+
+@protected
+@pytest.mark.parametrize("attack", ATTACKS)
+def test_a_program_cannot_write_to_the_folder_of_the_mesh(folder, attack):
+    """Also not by its full path, which the program may have from a file of settings."""
+    folder.environment["SETTING"] = str(folder.path)
+    folder.environment["OLDPWD"] = str(folder.path)
+    attack = attack.replace("{out}", str(folder.temporary / "*" / "out"))
+    fault = folder.fails("mesh.mesh", "--methods", "rcm", *shell(f"cd $SETTING; {attack} || exit 5"))
+    assert "exit status" in fault
+
+
+def test_without_protection_a_change_is_noticed(folder):
+    folder.environment["SETTING"] = str(folder.path)
+    for script in ("echo >> $SETTING/solver.py", "mkdir $SETTING/new"):
+        done = folder.command.run("try", "mesh.mesh", "--unprotected", *shell(script), env=folder.environment)
+        assert done.returncode == 2 and "changed while the program ran" in done.stderr
+
+
+@pytest.mark.parametrize("word", ["{}", "--mesh={}", "-m{}", "a:{}", "cd {}; solve"])
+@pytest.mark.parametrize("place", ["", "mesh.mesh", "alias"])
+def test_a_command_does_not_name_the_original(folder, word, place):
+    (folder.path / "alias").symlink_to("mesh.mesh")
+    folder.before = folder.contents()
+    fault = folder.fails("mesh.mesh", *shell("true"), word.replace("{}", str(folder.path / place)))
+    assert "each run needs its own copy" in fault and ("{}" in fault or "write ." in fault)
+
+
+def test_a_command_may_name_other_files(folder):
+    words = [str(folder.path / "solver.py"), str(folder.path.parent), "/", "a/b", "//", "--x="]
+    assert folder.json("mesh.mesh", "--methods", "rcm", "--budget", "1", "--json", *shell("true"), *words)
+
+
+def test_a_run_that_does_not_read_its_copy_is_a_fault(folder):
+    read = ("--", "/bin/sh", "-c", "test -e $1 && {}", "sh", "{}")
+    command = [word.replace("&& {}", "") for word in read]
+    assert folder.fails("mesh.mesh", *command) == (
+        "meshorder: sh, in the mesh's own order: it did not read its copy of the mesh, mesh.mesh; have it read {}")
+    for script in ("cat $1", "cp $1 a; cat a", "mv $1 a; cat a; mv a $1",
+                   f"{sys.executable} -c 'import mmap, sys; f = open(sys.argv[1]); mmap.mmap(f.fileno(), 0, mmap.MAP_PRIVATE, 1)[0]' $1"):
+        assert folder.json("mesh.mesh", "--methods", "rcm", "--budget", "1", "--json", "--", "/bin/sh", "-c", script, "sh", "{}")
 
 
 def test_a_mesh_of_several_files_moves_as_one(folder):
     meshes.write_tetgen(folder.path)
     folder.before = folder.contents()
     result = folder.json("mesh.node", "--methods", "rcm,scrambled", "--budget", "3", "--json",
-                         *shell("test -e mesh.ele && cat mesh.ele $1 > /dev/null"))
+                         *shell("cat mesh.ele > /dev/null"))
     assert result["orders"][0]["runs"] >= 1
 
 
 def test_words_of_the_program_are_its_own(folder):
-    script = 'test "$1" = mesh -a "$2" = mesh.mesh -a "$3" = "[a,b]" -a "$4" = --json= -a "$5" = "" || exit 1'
+    script = 'cat $2; test "$1" = mesh -a "$2" = mesh.mesh -a "$3" = "[a,b]" -a "$4" = --json= -a "$5" = "" || exit 1'
     folder.json("mesh.mesh", "--methods", "rcm", "--budget", "2", "--json", "--", "/bin/sh", "-c", script, "sh",
                 "{stem}", "{}", "[a,b]", "--json=", "")
 
@@ -354,7 +444,7 @@ def write_program(folder, name, script):
 @pytest.mark.parametrize("line", [" *ERROR in readinput: no file", "--ERROR: no mesh", "[error] no mesh", "# Error: no"])
 def test_an_error_that_the_program_prints_is_a_warning(folder, line):
     """Even if the program ends with status 0."""
-    program = write_program(folder, "claims", f'echo "{line}"; echo done')
+    program = write_program(folder, "claims", f'cat $1 > mesh; echo "{line}"; echo done')
     result = folder.json("mesh.mesh", "--methods", "rcm,hilbert", "--budget", "1", "--json", "--", program, "{}")
     note, = (note for note in result["notes"] if "printed" in note)
     assert note == f"the program printed '{line.strip()}': did it read the mesh?"
@@ -363,21 +453,22 @@ def test_an_error_that_the_program_prints_is_a_warning(folder, line):
 @pytest.mark.parametrize("line", ["error = 1e-9", "Error: 0.5", "errors 3", "no error", "error_norm 3",
                                   "error condition (0=good, 1=bad) = 0"])
 def test_results_are_no_errors(folder, line):
-    program = write_program(folder, "converges", f'echo "{line}"')
+    program = write_program(folder, "converges", f'cat $1 > mesh; echo "{line}"')
     result = folder.json("mesh.mesh", "--methods", "rcm", "--budget", "1", "--json", "--", program, "{}")
     assert not any("printed" in note for note in result["notes"])
 
 
 def test_calculix_adds_the_extension(folder):
-    ccx = write_program(folder, "ccx_2.20", 'test -e $1.inp && exit 0; echo " *ERROR: cannot open $1.inp"\n'
+    ccx = write_program(folder, "ccx_2.20", 'cat $1.inp && exit 0; echo " *ERROR: cannot open $1.inp"\n'
                                             'echo "CalculiX stops."; exit $2')
     (folder.path / "mesh.inp").write_text("*NODE\n1, 0, 0, 0\n2, 0, 1, 0\n3, 1, 0, 0\n4, 0, 0, 1\n"
                                           "*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n")
     folder.before = folder.contents()
     arguments = ("mesh.inp", "--methods", "scrambled", "--budget", "1", "--json", "--", ccx)
     remedy = "(CalculiX adds .inp by itself: write {stem} in place of {})"
-    result = folder.json(*arguments, "{}", "0")
-    assert f"the program printed '*ERROR: cannot open mesh.inp.inp': did it read the mesh? {remedy}" in result["notes"]
+    fault = folder.fails(*arguments, "{}", "0")
+    assert f"it did not read its copy of the mesh, mesh.inp; have it read {{}}; it printed '*ERROR: cannot open" in fault
+    assert fault.endswith(remedy)
     fault = folder.fails(*arguments, "{}", "201")
     assert "exit status 201: *ERROR: cannot open mesh.inp.inp" in fault and remedy in fault and "stops" not in fault
     assert not any("printed" in note for note in folder.json(*arguments, "{stem}", "0")["notes"])
@@ -568,6 +659,17 @@ def test_what_links_of_a_case_lead_to_stays(folder, case, linked, method):
     assert by_name(result)[method]["fault"] is None
 
 
+@pytest.mark.parametrize("place", ["", "constant", "constant/polyMesh", "system/.."])
+def test_a_program_runs_on_the_copy_of_a_case(folder, case, place):
+    fault = folder.fails("cavity", "--", "flow", "-case", str(case / place))
+    assert fault.endswith("each run needs its own copy of it; write {} in its place")
+    assert "did not read its copy of the mesh, constant/polyMesh" in folder.fails("cavity", "--", "/bin/true")
+    script = "import pathlib, sys; (pathlib.Path(sys.argv[1].replace('+', '/')) / '0.02').mkdir()"
+    folder.environment["SETTING"] = str(case)
+    if landlock_version() >= 3:
+        assert "cannot write" in folder.fails("cavity", "--", sys.executable, "-c", script, str(case).replace("/", "+"))
+
+
 def test_a_case_with_meshes_of_processes_is_tried_only_without_them(folder, case):
     """A parallel program reads these meshes, which stay in their order."""
     (case / "processor0" / "constant" / "polyMesh").mkdir(parents=True)
@@ -591,7 +693,7 @@ def test_faults_of_cases(folder, case):
     assert "decomposed cases cannot be tried" in fault and "reconstructParMesh" in fault
     (case / "constant" / "polyMesh" / "owner").write_text("cut")
     folder.before = folder.contents()
-    line = folder.fails("cavity", "--", "/bin/true")
+    line = folder.fails("cavity", "--", "/bin/sh", "-c", "cat constant/polyMesh/owner")
     assert "cavity" in line and str(folder.temporary) not in line
     folder.environment["PATH"] = "/usr/bin:/bin"
     assert "renumberMesh" in folder.fails("cavity", "--", "/bin/true")

@@ -221,7 +221,14 @@ void remove_unfinished_outputs() noexcept {
 }
 
 PrivateFolder::PrivateFolder() {
-  std::string name = (fs::temp_directory_path() / "meshorder-XXXXXX").string();
+  std::error_code code;
+  const fs::path parent = fs::temp_directory_path(code);
+  if (code) {
+    const char* const given = std::getenv("TMPDIR");
+    throw InputError(given == nullptr ? "/tmp" : given, "there is no such folder for temporary files",
+                     "set TMPDIR to a folder that exists");
+  }
+  std::string name = (fs::absolute(parent) / "meshorder-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) {
     throw_system_fault(name, "the folder for temporary files cannot be made", errno);
   }
