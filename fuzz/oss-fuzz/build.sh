@@ -7,7 +7,7 @@
 # the system's C++ libraries are built with libstdc++
 export CXXFLAGS="${CXXFLAGS/-stdlib=libc++/}"
 build=$WORK/build
-cmake -S "$SRC/meshorder" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=None -DMESHORDER_WERROR=OFF -DMESHORDER_FUZZ=ON \
+cmake -S "$SRC/meshorder" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=None -DMESHORDER_FUZZ=ON \
   "-DMESHORDER_FUZZ_ENGINE=$LIB_FUZZING_ENGINE" -DMESHORDER_TESTS=OFF -DMESHORDER_EXAMPLES=OFF -DMESHORDER_CLI=OFF \
   -DMESHORDER_MODELS_TOOL=OFF "-DMESHORDER_COMPONENTS=core;io" '-DCMAKE_EXE_LINKER_FLAGS=-Wl,-rpath,$ORIGIN/lib'
 ninja -C "$build" meshorder_fuzz meshorder_fuzz_seeds

@@ -37,5 +37,4 @@ class Meshorder(CMakePackage):
             self.define("MESHORDER_TESTS", False),
             self.define("MESHORDER_EXAMPLES", False),
             self.define("MESHORDER_MODELS_TOOL", False),
-            self.define("MESHORDER_WERROR", False),
         ]

@@ -81,6 +81,14 @@ CHOICES = [
 def test_all_that_is_chosen_can_be_built(tmp_path, options):
     run("cmake", "-S", ROOT, "-B", tmp_path, "-G", "Ninja", *options, cwd=ROOT)
     run("ninja", "-C", tmp_path, "-n")  # fails if no rule makes a needed file
+    assert "-Werror" not in (tmp_path / "build.ninja").read_text(), "a newer compiler's warning must not stop users"
+
+
+def test_only_the_projects_own_tests_make_warnings_errors():
+    for path in ("pyproject.toml", "CMakePresets.json", "run", "scripts/setup.sh", "packaging/spack/package.py"):
+        assert "MESHORDER_WERROR" not in (ROOT / path).read_text(), path
+    for path in ("test", "scripts/test-hosts"):
+        assert "-DMESHORDER_WERROR=ON" in (ROOT / path).read_text(), path
 
 
 # ---- installed files
