@@ -82,8 +82,9 @@ MO_API mo_status mo_mpi_order_ranks(int32_t communicator, const mo_mpi_mesh* mes
  * @param mesh          this rank's share
  * @param options       or null
  * @param new_numbers   vertex_count numbers: the new number of each own vertex
- * @param part_starts   parts + 1 numbers: the first new number of each part, then the end of the last part;
- *                      vertices that no element uses have the numbers from that end on
+ * @param part_starts   parts + 1 numbers, or ranks + 1 if `parts` is 0: the first new number of each part,
+ *                      then the end of the last part; vertices that no element uses have the numbers from
+ *                      that end on
  * @param cell_parts    cell_count numbers, or null: the part of each element, which is the part of the
  *                      element's vertex with the largest new number
  */

@@ -10,9 +10,6 @@
 namespace meshorder::c {
 namespace {
 
-/// The largest `struct_size` that is accepted; a larger value is probably an unset field.
-constexpr std::size_t kLargestStruct = 4096;
-
 bool is_integer(mo_type type) { return type >= MO_INT32 && type <= MO_UINT64; }
 bool is_real(mo_type type) { return type == MO_FLOAT || type == MO_DOUBLE; }
 
@@ -241,21 +238,13 @@ GraphView graph_of(const mo_in* offsets, const mo_in* neighbours, const mo_in* w
           .base = base};
 }
 
-void check_struct_size(std::size_t size, const char* name) {
-  if (size >= sizeof(std::size_t) && size <= kLargestStruct) return;
-  fail(name, "struct_size is " + std::to_string(size) + ", must be the size of the structure");
-}
-
 }  // namespace meshorder::c
 
 using namespace meshorder;
 
 void mo_options_init(mo_options* options, size_t struct_size) {
-  if (options == nullptr || struct_size < sizeof(std::size_t)) return;
-  // sets to 0 the fields that only the caller's newer header has
-  if (struct_size <= c::kLargestStruct) std::memset(static_cast<void*>(options), 0, struct_size);
-  c::copy_options(c::default_options(), *options, struct_size);
-  options->struct_size = struct_size;
+  c::fill_struct(options, struct_size,
+                 [&](mo_options& to) { c::copy_options(c::default_options(), to, struct_size); });
 }
 
 const char* mo_last_error() { return c::last_error().c_str(); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/status.hpp"
+#include "c/structures.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/order.hpp>
 #include <meshorder/view.hpp>
@@ -10,7 +11,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
@@ -65,22 +65,6 @@ inline void write(std::span<const Index> map, int base, const mo_out* array, con
 }
 /// Writes numbers into an array that `check_reals` accepted; does nothing if the array is null.
 void write(std::span<const double> values, const mo_out* array);
-
-// Structures that grow from version to version.
-
-void check_struct_size(std::size_t size, const char* name);
-
-/// Copies each of the given fields that lies entirely within the first `size` bytes of the structure.
-template <class Struct, class... Fields>
-void copy_fields(const Struct& from, Struct& to, std::size_t size, Fields Struct::*... fields) {
-  const auto copy = [&](auto field) {
-    const auto* const begin = reinterpret_cast<const char*>(&from);
-    const auto* const end = reinterpret_cast<const char*>(&(from.*field)) + sizeof(from.*field);
-    if (static_cast<std::size_t>(end - begin) > size) return;
-    std::memcpy(&(to.*field), &(from.*field), sizeof(from.*field));
-  };
-  (copy(fields), ...);
-}
 
 // Options.
 

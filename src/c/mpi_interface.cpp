@@ -2,6 +2,7 @@
 // The C interface for MPI. Copies the caller's arrays, checks them on all ranks, and turns exceptions into
 // statuses.
 #include "base/status.hpp"
+#include "c/structures.hpp"
 #include "distributed/comm/communicator.hpp"
 #include "distributed/order/owned_order.hpp"
 #include <meshorder/error.hpp>
@@ -59,6 +60,13 @@ mo_mpi_options default_mpi_options() {
   return options;
 }
 
+/// Copies the fields of options, except `struct_size`, that lie within the first `size` bytes.
+void copy_options(const mo_mpi_options& from, mo_mpi_options& to, std::size_t size) {
+  c::copy_fields(from, to, size, &mo_mpi_options::method, &mo_mpi_options::partition,
+                 &mo_mpi_options::balance, &mo_mpi_options::seed, &mo_mpi_options::parts,
+                 &mo_mpi_options::threads, &mo_mpi_options::interface_last, &mo_mpi_options::reserved);
+}
+
 /// An option by its name, with its value as text.
 struct NamedOption {
   const char* name;
@@ -97,8 +105,8 @@ DistributedOptions options_of(const Communicator& communicator, const mo_mpi_opt
   communicator.together([&] {
     mo_mpi_options all = default_mpi_options();
     if (given != nullptr) {
-      require(given->struct_size >= sizeof all, "options: struct_size must be the size of the structure");
-      all = *given;
+      c::check_struct_size(given->struct_size, "options");
+      copy_options(*given, all, given->struct_size);
     }
     if (all.method != nullptr) options.vertices = all.method;
     if (all.partition != nullptr) options.partitioner = parse<distributed::Partitioner>(all.partition);
@@ -114,9 +122,21 @@ DistributedOptions options_of(const Communicator& communicator, const mo_mpi_opt
   return options;
 }
 
+/// Returns the caller's mesh. Lengths that the caller's older header lacks are 0.
+mo_mpi_mesh complete_mesh(const mo_mpi_mesh& given) {
+  c::check_struct_size(given.struct_size, "mesh", offsetof(mo_mpi_mesh, cell_vertex_count));
+  mo_mpi_mesh mesh{};
+  mesh.struct_size = given.struct_size;
+  c::copy_fields(given, mesh, given.struct_size, &mo_mpi_mesh::vertex_count, &mo_mpi_mesh::cell_count,
+                 &mo_mpi_mesh::cell_offsets, &mo_mpi_mesh::cell_vertices, &mo_mpi_mesh::points,
+                 &mo_mpi_mesh::cell_vertex_count, &mo_mpi_mesh::coordinate_count);
+  return mesh;
+}
+
 /// Copies a rank's arrays to `mesh` and checks the arrays; `mesh.vertices` must be set.
 void copy_arrays(const mo_mpi_mesh& given, OwnedMesh& mesh) {
   const GlobalIndex n = mesh.vertices.size();
+  const bool has_lengths = given.struct_size >= sizeof given;
   require(given.cell_count >= 0, "cell_count: " + std::to_string(given.cell_count));
   mesh.cells.offsets.reserve(static_cast<std::size_t>(given.cell_count) + 1);
   if (given.cell_count > 0) {
@@ -129,9 +149,9 @@ void copy_arrays(const mo_mpi_mesh& given, OwnedMesh& mesh) {
             "cell_offsets: element " + std::to_string(c) + " has no vertices");
   }
   const std::int64_t end = given.cell_count == 0 ? 0 : given.cell_offsets[given.cell_count];
-  require(given.cell_vertex_count == end, "cell_vertices: there are " +
-                                              std::to_string(given.cell_vertex_count) +
-                                              ", and cell_offsets end at " + std::to_string(end));
+  require(!has_lengths || given.cell_vertex_count == end,
+          "cell_vertices: there are " + std::to_string(given.cell_vertex_count) +
+              ", and cell_offsets end at " + std::to_string(end));
   for (std::int64_t c = 0; c < given.cell_count; ++c) {
     for (std::int64_t k = given.cell_offsets[c]; k < given.cell_offsets[c + 1]; ++k) {
       const std::int64_t vertex = given.cell_vertices[k];
@@ -142,7 +162,7 @@ void copy_arrays(const mo_mpi_mesh& given, OwnedMesh& mesh) {
     mesh.cells.end_row();
   }
   const std::int64_t coordinates = given.points == nullptr ? 0 : 3 * given.vertex_count;
-  require(given.coordinate_count == coordinates,
+  require(!has_lengths || given.coordinate_count == coordinates,
           "points: there are " + std::to_string(given.coordinate_count) + " coordinates instead of " +
               std::to_string(coordinates) + "; each vertex needs x y z, with z = 0 in the plane");
   if (given.points == nullptr) return;
@@ -156,19 +176,20 @@ void copy_arrays(const mo_mpi_mesh& given, OwnedMesh& mesh) {
 }
 
 OwnedMesh mesh_of(const Communicator& communicator, const mo_mpi_mesh* given) {
+  mo_mpi_mesh whole{};
   communicator.together([&] {
     require(given != nullptr, "mesh: null");
-    require(given->struct_size >= sizeof *given, "mesh: struct_size must be the size of the structure");
-    require(given->vertex_count >= 0 && given->vertex_count <= kMostVertices,
-            "vertex_count: " + std::to_string(given->vertex_count));
+    whole = complete_mesh(*given);
+    require(whole.vertex_count >= 0 && whole.vertex_count <= kMostVertices,
+            "vertex_count: " + std::to_string(whole.vertex_count));
   });
-  const std::vector<std::int64_t> counts = communicator.gathered(given->vertex_count);
+  const std::vector<std::int64_t> counts = communicator.gathered(whole.vertex_count);
   OwnedMesh mesh;
   communicator.together([&] {
     std::vector<GlobalIndex> starts{0};
     for (const std::int64_t count : counts) starts.push_back(starts.back() + count);
     mesh.vertices = Layout(std::move(starts));
-    copy_arrays(*given, mesh);
+    copy_arrays(whole, mesh);
   });
   return mesh;
 }
@@ -192,11 +213,8 @@ void write(const Communicator& communicator, const std::vector<GlobalIndex>& num
 using namespace meshorder;
 
 void mo_mpi_options_init(mo_mpi_options* options, size_t struct_size) {
-  if (options == nullptr || struct_size < sizeof(std::size_t)) return;
-  const mo_mpi_options defaults = default_mpi_options();
-  std::memset(static_cast<void*>(options), 0, struct_size);
-  std::memcpy(options, &defaults, std::min(struct_size, sizeof defaults));
-  options->struct_size = struct_size;
+  c::fill_struct(options, struct_size,
+                 [&](mo_mpi_options& to) { copy_options(default_mpi_options(), to, struct_size); });
 }
 
 mo_status mo_mpi_order_ranks(int32_t communicator, const mo_mpi_mesh* mesh, const mo_mpi_options* options,

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace meshorder {
@@ -234,6 +235,47 @@ TEST(RankMeshes, AFaultOfOneRankIsReportedOnAll) {
     mesh.points = {};
     expect_fault(mesh, "some ranks have coordinates");
   }
+}
+
+TEST(StructuresOfC, OfAnOlderHeaderAreTakenWithoutTheFieldsThatItLacks) {
+  const Solver solver(make_ball({.size = 6}));
+  const std::int32_t communicator = MPI_Comm_c2f(MPI_COMM_WORLD);
+  mo_mpi_mesh mesh = detail::to_c(solver.view());
+  const std::string method = "rcm";
+  mo_mpi_options options = detail::to_c(RankOptions{.method = method, .interface_last = true});
+  std::vector<std::int64_t> numbers(static_cast<std::size_t>(mesh.vertex_count));
+  const auto order = [&] {
+    return mo_mpi_order_ranks(communicator, &mesh, &options, numbers.data(), nullptr);
+  };
+
+  // what lies beyond a structure is not read
+  mesh.struct_size = offsetof(mo_mpi_mesh, cell_vertex_count);
+  mesh.cell_vertex_count = mesh.coordinate_count = -1;
+  options.struct_size = offsetof(mo_mpi_options, interface_last);
+  options.reserved = -1;
+  ASSERT_EQ(order(), MO_OK) << mo_mpi_last_error();
+  EXPECT_EQ(numbers, order_ranks(MPI_COMM_WORLD, solver.view(), {.method = method}).new_numbers);
+
+  const auto expect_refusal = [&](const std::string& words) {
+    EXPECT_EQ(order(), MO_INVALID_ARGUMENT);
+    EXPECT_THAT(mo_mpi_last_error(), testing::HasSubstr(words));
+  };
+  for (const std::size_t size : {std::size_t{0}, offsetof(mo_mpi_mesh, points), std::size_t{1} << 40}) {
+    mesh.struct_size = size;
+    expect_refusal("mesh: struct_size is " + std::to_string(size));
+  }
+  mesh.struct_size = offsetof(mo_mpi_mesh, cell_vertex_count);
+  options.struct_size = 0;
+  expect_refusal("options: struct_size is 0");
+}
+
+TEST(StructuresOfC, AreFilledInUpToTheirSize) {
+  mo_mpi_options options{};
+  options.threads = options.interface_last = 7;
+  mo_mpi_options_init(&options, offsetof(mo_mpi_options, interface_last));
+  EXPECT_EQ(options.struct_size, offsetof(mo_mpi_options, interface_last));
+  EXPECT_EQ(options.threads, 1);
+  EXPECT_EQ(options.interface_last, 7);
 }
 
 TEST(RankOptions, ThatDifferBetweenRanksAreRefusedOnAll) {

@@ -145,6 +145,14 @@ def test_mistakes_are_reported_in_a_line(call, words):
     assert words in refused(f"meshorder.mpi.{call}")
 
 
+def test_more_parts_than_vertices_are_refused_before_their_table_is_allocated():
+    said = refused("""
+    import resource
+    resource.setrlimit(resource.RLIMIT_AS, (12 << 30, 12 << 30))  # the table would take 16 GiB
+    meshorder.mpi.order_parts(comm, own, triangles, places, parts=2**31 - 1)""")
+    assert "too few for 2147483647 parts" in said
+
+
 def test_the_example_of_the_manual_moves_vertices_and_elements():
     """The new elements join the same places as the old ones."""
     page = (ROOT / "docs" / "scale.md").read_text()

@@ -286,10 +286,11 @@ def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         New numbers of this rank's vertices, the ranges of the parts, and the part of each of its elements.
 
     Raises:
-        InvalidArgument, Unavailable, Error: as `order_ranks`; InvalidArgument also for options that contradict each other.
+        InvalidArgument, Unavailable, Error: as `order_ranks`; InvalidArgument also for more parts than vertices and for
+            options that contradict each other.
     """
 
-    def prepare() -> tuple[_Arrays, _Options, PartOrder]:
+    def prepare() -> tuple[_Arrays, _Options, int]:
         _library()
         own = whole(vertex_count, _MOST_VERTICES, "vertex_count")
         count = whole(parts, 2**31 - 1, "parts")
@@ -297,10 +298,14 @@ def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         options = _Options(ctypes.sizeof(_Options), _text(method, "method"), _text(partition, "partition"),
                            _text(balance, "balance"), whole(seed, 2**64 - 1, "seed"), count,
                            whole(threads, 2**31 - 1, "threads"), bool(interface_last), 0)  # fmt: skip
-        return arrays, options, PartOrder(_room_for(own), _room_for((count or communicator.size) + 1),
-                                          _room_for(len(arrays.offsets) - 1))  # fmt: skip
+        return arrays, options, count
 
-    arrays, options, order = _on_all_ranks(communicator, prepare)
+    arrays, options, count = _on_all_ranks(communicator, prepare)
+    own = arrays.vertex_count
+    vertices = sum(communicator.allgather(own))
+    room = min(count, vertices) if count else communicator.size  # more parts than vertices are refused
+    order = _on_all_ranks(communicator, lambda: PartOrder(_room_for(own), _room_for(room + 1),
+                                                          _room_for(len(arrays.offsets) - 1)))  # fmt: skip
     _call(_library().mo_mpi_order_parts, communicator, arrays, options, order.new_numbers, order.part_starts,
           order.cell_parts)  # fmt: skip
     return order
