@@ -162,8 +162,8 @@ const DataArray* find_array(const Mesh&& mesh, std::string_view name, Associatio
 
 /// Checks that the members of a mesh are consistent: coordinates are finite; offsets ascend; every cell has a
 /// known shape, at least the corners of that shape, and vertices that exist; every array has a row for each
-/// vertex or cell, or for each of its indices, which exist; members of sets exist; all vertices have ids, or
-/// none has, and likewise all cells; blocks ascend.
+/// vertex or cell, or for each of its indices, which exist and differ; members of sets exist and differ; all
+/// vertices have ids, or none has, and likewise all cells; blocks ascend.
 ///
 /// @throws InvalidArgument for the first fault, which the message names
 /// @note O(size of the mesh).

@@ -2,6 +2,7 @@
 #include "io/names.hpp"
 
 #include "base/text.hpp"
+#include "io/mesh_part.hpp"
 
 #include <fmt/format.h>
 
@@ -25,6 +26,25 @@ std::string add_named(Mesh& mesh, EntitySet set, UniqueNames& names) {
   set.name = names.take(set.association, set.name);
   mesh.sets.push_back(std::move(set));
   return mesh.sets.back().name;
+}
+
+std::vector<Index> unique_members(const std::vector<Index>& members) {
+  std::vector<Index> sorted = members;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) return members;
+  std::set<Index> seen;
+  std::vector<Index> result;
+  for (const Index member : members) {
+    if (seen.insert(member).second) result.push_back(member);
+  }
+  return result;
+}
+
+void drop_repeated(EntitySet& set, Notes& notes) {
+  const std::size_t before = set.members.size();
+  set.members = unique_members(set.members);
+  const std::size_t repeated = before - set.members.size();
+  if (repeated > 0) notes.push_back(note_of_repeated("the set '" + set.name + "'", repeated));
 }
 
 std::string plain_name(std::string_view name, std::string_view forbidden) {

@@ -56,6 +56,11 @@ std::string add_named(Mesh& mesh, DataArray array, UniqueNames& names);
 /// Adds a set to a mesh under a name that no other set has; returns that name.
 std::string add_named(Mesh& mesh, EntitySet set, UniqueNames& names);
 
+/// Returns the members in their order, each once. O(members · log members).
+std::vector<Index> unique_members(const std::vector<Index>& members);
+/// Removes the members of a set that come again, and notes their number.
+void drop_repeated(EntitySet& set, Notes& notes);
+
 // The functions and the class below make names that a format can hold.
 
 /// Returns the name with "_" in place of control characters and of the characters in `forbidden`. O(size).

@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 
@@ -94,7 +95,35 @@ void check_points(const Mesh& mesh) {
   fail("vertex " + std::to_string(v) + " has a coordinate that is not finite");
 }
 
+/// Checks lists of vertices and of cells.
+class ListChecks {
+ public:
+  explicit ListChecks(const Mesh& mesh) : mesh_(mesh) {}
+
+  /// Throws if a number does not exist or comes twice. O(list), and once O(vertices or cells) for the lists
+  /// that do not ascend.
+  void check(const std::vector<Index>& members, Association association, const std::string& owner) {
+    const Index count = association == Association::vertices ? mesh_.vertex_count() : mesh_.cell_count();
+    check_members(members, count, owner);
+    if (std::ranges::adjacent_find(members, std::greater_equal<>()) == members.end()) return;
+    std::vector<Index>& last_list = last_list_[association == Association::vertices ? 0 : 1];
+    last_list.resize(static_cast<std::size_t>(count));
+    ++lists_;
+    for (const Index member : members) {
+      Index& last = last_list[static_cast<std::size_t>(member)];
+      if (last == lists_) fail(owner + " names " + std::to_string(member) + " twice");
+      last = lists_;
+    }
+  }
+
+ private:
+  const Mesh& mesh_;
+  Index lists_ = 0;                              // lists so far that do not ascend
+  std::array<std::vector<Index>, 2> last_list_;  // the last of them with a vertex, and with a cell
+};
+
 void check_data(const Mesh& mesh) {
+  ListChecks lists(mesh);
   for (const DataArray& array : mesh.data) {
     const Index count = array.association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
     const std::string owner = "array '" + array.name + "'";
@@ -104,13 +133,9 @@ void check_data(const Mesh& mesh) {
         size_of(array.values) % static_cast<std::size_t>(array.components) != 0) {
       fail(owner + " has " + std::to_string(row_count(array)) + " rows for " + std::to_string(expected));
     }
-    check_members(array.indices, count, owner);
+    lists.check(array.indices, array.association, owner);
   }
-  for (const EntitySet& set : mesh.sets) {
-    check_members(set.members,
-                  set.association == Association::vertices ? mesh.vertex_count() : mesh.cell_count(),
-                  "set '" + set.name + "'");
-  }
+  for (const EntitySet& set : mesh.sets) lists.check(set.members, set.association, "set '" + set.name + "'");
 }
 
 void check_numbering(const Mesh& mesh) {

@@ -244,6 +244,16 @@ TEST(Medit, KeepsReferencesOf64Bits) {
   test::expect_write_and_read(mesh, "m.mesh");
 }
 
+TEST(Medit, KeepsAMemberThatAListNamesTwiceOnce) {
+  Notes notes;
+  const Mesh mesh = read(
+      "MeshVersionFormatted 2\nDimension 2\nVertices 3\n0 0 1\n1 0 2\n0 1 2\n"
+      "Triangles 1\n1 2 3 0\nCorners 4\n3 1 3 3\nEnd\n",
+      &notes);
+  EXPECT_THAT(mesh.sets.at(0).members, ElementsAre(2, 0));
+  EXPECT_THAT(notes, ElementsAre("the set 'Corners' names 2 members twice, which are kept once"));
+}
+
 TEST(Medit, AcceptsAFileWithoutEndAndSaysSo) {
   Notes notes;
   const std::string_view content =

@@ -33,8 +33,9 @@ Mesh right_mesh() {
   mesh.cells.push_back(Shape::tetrahedron, std::vector<Index>{1, 2, 3, 4});
   mesh.data.push_back({"a", Association::vertices, 1, std::vector<double>(5), {}, {}});
   mesh.data.push_back({"b", Association::cells, 3, std::vector<float>(3), {1}, {}});
-  mesh.sets.push_back({"s", Association::vertices, {0, 4}});
+  mesh.sets.push_back({"s", Association::vertices, {4, 0}});
   mesh.sets.push_back({"t", Association::cells, {1}});
+  mesh.sets.push_back({"u", Association::vertices, {3, 4, 2}});
   mesh.vertex_ids = {5, 4, 3, 2, 1};
   mesh.cell_ids = {7, 8};
   return mesh;
@@ -78,6 +79,20 @@ const std::vector<std::pair<std::string, Change>>& wrong_members() {
       {"rows too long", [](Mesh& m) { m.data[1].values = std::vector<float>(4); }},
       {"a row of a cell beyond", [](Mesh& m) { m.data[1].indices = {2}; }},
       {"a row of a cell below 0", [](Mesh& m) { m.data[1].indices = {-1}; }},
+      {"two rows of a cell",
+       [](Mesh& m) {
+         m.data[1].values = std::vector<float>(6);
+         m.data[1].indices = {1, 1};
+       }},
+      {"rows that come again after others",
+       [](Mesh& m) {
+         m.data[0].values = std::vector<double>(3);
+         m.data[0].indices = {3, 0, 3};
+       }},
+      {"a member that comes twice",
+       [](Mesh& m) {
+         m.sets[1].members = {1, 0, 1};
+       }},
       {"a member beyond",
        [](Mesh& m) {
          m.sets[0].members = {0, 5};

@@ -157,13 +157,13 @@ TEST(Vega, KeepsAttributesAndMarkersOfIncludedTetgenFiles) {
 TEST(Vega, ReadsNestedIncludesFromTheFolderOfEach) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path() / "sub");
-  (void)folder.file("sub/list.txt", "1,\n*INCLUDE rest.txt\n1\n");
+  (void)folder.file("sub/list.txt", "*INCLUDE rest.txt\n1\n");
   (void)folder.file("sub/rest.txt", "2,\n");
   (void)folder.file("empty.txt", "");
   std::string text(kTwoTets);
   text.replace(text.find("2\n\n*SET none"), 2, "*include sub/list.txt\n*INCLUDE empty.txt\n");
   const Mesh mesh = read_mesh(folder.file("a.veg", text));
-  EXPECT_EQ(mesh.sets[0].members, (std::vector<Index>{0, 1, 0}));
+  EXPECT_EQ(mesh.sets[0].members, (std::vector<Index>{1, 0}));
 }
 
 TEST(Vega, NamesFileAndLineOfIncludesThatFail) {
@@ -278,6 +278,15 @@ TEST(Vega, KeepsUnknownSectionsThatNameNoElements) {
       "4\n\n*DAMPING rayleigh\nmass 0.1\n\n";
   write_mesh(read_mesh(folder.file("a.veg", text)), folder.path() / "b.veg");
   EXPECT_EQ(content_of(folder.path() / "b.veg"), text);
+}
+
+TEST(Vega, KeepsAMemberThatASetNamesTwiceOnce) {
+  const TemporaryFolder folder;
+  Notes notes;
+  const Mesh mesh = read_mesh(folder.file("a.veg", with(std::string(kTwoTets), "upper\n2", "upper\n2, 1\n2")),
+                              {.notes = &notes});
+  EXPECT_EQ(mesh.sets.at(0).members, (std::vector<Index>{1, 0}));
+  EXPECT_EQ(notes, Notes{"the set 'upper' names 1 members twice, which are kept once"});
 }
 
 TEST(Vega, NoticesTruncation) { expect_truncation_is_noticed("a.veg", kTwoTets); }

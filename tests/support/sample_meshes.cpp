@@ -32,7 +32,9 @@ void attach_everything(Mesh& mesh) {
     mesh.data.push_back({std::string(kLabel), association, 1, labels, {}, {}});
     mesh.data.push_back({"temperature", association, 1, temperatures, {}, {}});
     mesh.data.push_back({"stress", association, 3, stresses, {}, {}});
-    mesh.sets.push_back({association == Association::vertices ? "fixed" : "part", association, {0, n - 1}});
+    EntitySet ends{association == Association::vertices ? "fixed" : "part", association, {0}};
+    if (n > 1) ends.members.push_back(n - 1);
+    mesh.sets.push_back(std::move(ends));
   }
 }
 

@@ -539,18 +539,6 @@ Association location_of(const Node& node, Association inherited) {
   return is_one_of(location->text(), kVertexLocations) ? Association::vertices : Association::cells;
 }
 
-std::vector<Index> unique_members(const std::vector<Index>& members) {
-  std::vector<Index> sorted = members;
-  std::sort(sorted.begin(), sorted.end());
-  if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) return members;
-  std::set<Index> seen;
-  std::vector<Index> result;
-  for (const Index member : members) {
-    if (seen.insert(member).second) result.push_back(member);
-  }
-  return result;
-}
-
 void read_attachments(Reading& reading) { AttachmentReader(reading).read(); }
 
 }  // namespace meshorder::cgns

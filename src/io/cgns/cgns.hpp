@@ -194,9 +194,6 @@ std::string name_of_label(const ElementType& type, std::int64_t label);
 /// hold only values of cells of the base's dimension.
 inline constexpr std::string_view kSectionValues = "CellValues";
 
-/// Returns the members in their order, each once.
-std::vector<Index> unique_members(const std::vector<Index>& members);
-
 /// Makes the nodes of a file for a mesh of another format: one zone, whose sections are runs of cells of one
 /// type and one label or the same sets. Sets and arrays are left to `add_missing` (numbering.hpp).
 std::shared_ptr<CgnsMetadata> layout_of(const Mesh& mesh);

@@ -7,6 +7,7 @@
 #include "io/cgns/numbering.hpp"
 #include "io/labels.hpp"
 #include "io/named_parts.hpp"
+#include "io/names.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <unordered_set>
 
 // Sections that refer to nodes and elements by number: $Periodic and $GhostElements.
 
@@ -37,19 +38,32 @@ Index read_affine(ReadContext& reading, PeriodicLink& link) {
   return source.count(kCount, 4, reading.metadata.has_wide_numbers() ? 16 : 8);
 }
 
-/// Reads pairs of nodes as two sets. Returns the number of pairs that name a missing node and are left out.
-Index read_pairs(ReadContext& reading, PeriodicLink& link, Index count) {
+/// Numbers of pairs that are left out.
+struct LeftOut {
+  Index missing = 0;   ///< they name a node that the file does not have
+  Index repeated = 0;  ///< they name a node that an earlier pair of the entity names in the same place
+};
+
+/// Reads pairs of nodes as two sets.
+void read_pairs(ReadContext& reading, PeriodicLink& link, Index count, LeftOut& left_out) {
   const std::string name = "gmsh:periodic " + std::to_string(link.dimension) + " " + std::to_string(link.tag);
   EntitySet nodes{name, Association::vertices, {}};
   EntitySet masters{name + " master", Association::vertices, {}};
-  Index missing = 0;
+  std::unordered_set<Index> seen_nodes;
+  std::unordered_set<Index> seen_masters;
   for (Index i = 0; i < count; ++i) {
     const Index node = reading.nodes.find(read_number(reading, "a periodic node"));
     const Index master = reading.nodes.find(read_number(reading, "a periodic node"));
     if (node < 0 || master < 0) {
-      ++missing;
+      ++left_out.missing;
       continue;
     }
+    if (seen_nodes.contains(node) || seen_masters.contains(master)) {
+      ++left_out.repeated;
+      continue;
+    }
+    seen_nodes.insert(node);
+    seen_masters.insert(master);
     nodes.members.push_back(node);
     masters.members.push_back(master);
   }
@@ -57,7 +71,6 @@ Index read_pairs(ReadContext& reading, PeriodicLink& link, Index count) {
   link.master_nodes = masters.name;
   reading.mesh.sets.push_back(std::move(nodes));
   reading.mesh.sets.push_back(std::move(masters));
-  return missing;
 }
 
 }  // namespace
@@ -68,7 +81,7 @@ void read_periodic(ReadContext& reading, std::string_view section) {
   const bool binary = source.binary;
   if (reading.metadata.is_version_2()) source.binary = false;
   const Index links = read_count(reading, "the number of periodic entities", 8, 20);
-  Index missing = 0;
+  LeftOut left_out;
   std::set<Entity> entities;
   for (Index i = 0; i < links; ++i) {
     PeriodicLink link;
@@ -81,14 +94,19 @@ void read_periodic(ReadContext& reading, std::string_view section) {
           "each has one master");
     }
     const Index pairs = read_affine(reading, link);
-    missing += read_pairs(reading, link, pairs);
+    read_pairs(reading, link, pairs, left_out);
     reading.metadata.periodic.push_back(std::move(link));
   }
   expect_end(reading, section);
   source.binary = binary;
-  if (missing > 0) {
+  if (left_out.missing > 0) {
     reading.notes.push_back(fmt::format(
-        "{} pairs of $Periodic are ignored: they name nodes that the file does not have", missing));
+        "{} pairs of $Periodic are ignored: they name nodes that the file does not have", left_out.missing));
+  }
+  if (left_out.repeated > 0) {
+    reading.notes.push_back(
+        fmt::format("{} pairs of $Periodic are ignored: an earlier pair of the entity names the same node",
+                    left_out.repeated));
   }
 }
 

@@ -2,6 +2,7 @@
 #include "base/text.hpp"
 #include "io/labels.hpp"
 #include "io/medit/medit.hpp"
+#include "io/names.hpp"
 #include "io/stream/regular_text.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
@@ -326,6 +327,7 @@ class Reader {
     const auto [first, count] = range_of(target, members);
     const std::string what = what_number();
     for (Index i = 0; i < members; ++i) set.members.push_back(first + in_.position(what, count));
+    drop_repeated(set, notes_);
     mesh_.sets.push_back(std::move(set));
   }
 

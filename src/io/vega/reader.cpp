@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 #include "io/named_parts.hpp"
+#include "io/names.hpp"
 #include "io/stream/id_map.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/stream/regular_text.hpp"
@@ -417,6 +418,7 @@ class Reader {
       }
       lines_.take();
     }
+    drop_repeated(set, notes_);
     sets_.insert(set.name);
     mesh_.sets.push_back(std::move(set));
   }
