@@ -57,11 +57,13 @@ void move_embedded(const std::vector<EmbeddedVertex>& embedded, std::span<const 
   for (const EmbeddedVertex& entry : embedded) {
     Point& position = state.positions[entry.vertex];
     position = rest[entry.vertex];
+    Point& velocity = state.velocities[entry.vertex];
+    velocity = {};
     for (std::size_t i = 0; i < 4; ++i) {
       const Index corner = entry.corners[i];
       for (std::size_t c = 0; c < 3; ++c) {
         position[c] += entry.weights[i] * (state.positions[corner][c] - rest[corner][c]);
-        state.velocities[entry.vertex][c] += entry.weights[i] * state.velocities[corner][c];
+        velocity[c] += entry.weights[i] * state.velocities[corner][c];
       }
     }
   }

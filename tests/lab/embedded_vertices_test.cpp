@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/embedded_vertices.hpp"
 
+#include "base/point.hpp"
 #include "support/sample_meshes.hpp"
 
 #include <gtest/gtest.h>
@@ -73,6 +74,27 @@ TEST(EmbeddedVertices, AreAllOtherNodesOfVolumeCellsAndGoAlongAffineMotions) {
       double mean = 0.0;
       for (std::size_t i = 0; i < 4; ++i) mean += entry.weights[i] * mesh.points[entry.corners[i]][c];
       EXPECT_NEAR(mean, mesh.points[entry.vertex][c], 1e-9);
+    }
+  }
+}
+
+TEST(EmbeddedVertices, MoveAsTheirCornersDoWhereverTheyWere) {
+  const Mesh mesh = straight_quadratic();
+  const std::vector<EmbeddedVertex> found = embed_vertices(mesh, cut_into_simplices(mesh));
+  const Point shift{1, 2, 3};
+  const Point velocity{4, -5, 6};
+  MotionState state;
+  state.positions.assign(mesh.points.size(), Point{7, 7, 7});
+  state.velocities.assign(mesh.points.size(), Point{8, 8, 8});
+  for (std::size_t corner = 0; corner < 5; ++corner) {
+    state.positions[corner] = plus_scaled(mesh.points[corner], 1.0, shift);
+    state.velocities[corner] = velocity;
+  }
+  move_embedded(found, mesh.points, state);
+  for (const EmbeddedVertex& entry : found) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(state.positions[entry.vertex][c], mesh.points[entry.vertex][c] + shift[c], 1e-14);
+      EXPECT_NEAR(state.velocities[entry.vertex][c], velocity[c], 1e-14);
     }
   }
 }

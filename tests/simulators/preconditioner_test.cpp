@@ -254,10 +254,11 @@ TEST(IncompleteCholesky, TakesFewerIterationsThanBlocksAndTheseThanTheDiagonal) 
   }
 }
 
-TEST(IncompleteCholesky, NeedsADiagonal) {
+TEST(Preconditioners, NeedADiagonal) {
   BlockCsr matrix = definite_matrix(test::path(3), 4.0);
   matrix.columns[0] = 2;
-  EXPECT_THROW(IncompleteCholesky{matrix}, InvalidArgument);
+  for (const auto& [kind, name] : EnumNames<PreconditionerKind>::names)
+    EXPECT_THROW((void)updated(kind, matrix), InvalidArgument) << name;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "lab/linear/multigrid/level.hpp"
 #include "lab/linear/multigrid/rigid_modes.hpp"
+#include "lab/linear/preconditioners/symmetric_block.hpp"
 #include "spectral/component_numbering.hpp"
 #include <meshorder/error.hpp>
 
@@ -82,6 +83,7 @@ class Multigrid final : public Preconditioner {
     if (index_size(points) != pattern.size()) {
       throw InvalidArgument("make_multigrid: a point is needed for each row of the matrix");
     }
+    for (Index v = 0; v < pattern.size(); ++v) (void)diagonal_block(pattern, v);
     ComponentNumbering numbering = number_components(graph_of(pattern));
     order_ = std::move(numbering.order);
     number_.resize(order_.size());

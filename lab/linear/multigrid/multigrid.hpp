@@ -29,7 +29,7 @@ namespace meshorder {
 /// The memory is 0.6 to 0.9 times that of the matrix. Set-up, update and cycle each take O(blocks) time, on
 /// all threads except for the aggregates. `apply` uses scratch memory of the object and must not be called by
 /// two threads at a time. Measured against Jacobi in docs/evidence/benchmarks.md. Throws InvalidArgument
-/// unless there is a point for each row.
+/// unless there are a point and a diagonal block for each row.
 std::unique_ptr<Preconditioner> make_multigrid(const BlockCsr& pattern, std::span<const Point> points);
 
 }  // namespace meshorder

@@ -60,7 +60,7 @@ struct EnumNames<PreconditionerKind> {
 
 /// Returns a preconditioner for matrices of this pattern. `points` are the positions of the vertices at rest,
 /// from which multigrid computes its rigid-body modes. Throws InvalidArgument if the numbers of points and
-/// rows differ. If a row lacks its diagonal, this function or `update` throws, except for multigrid.
+/// rows differ. If a row lacks its diagonal, this function or `update` throws.
 std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const BlockCsr& pattern,
                                                     std::span<const Point> points);
 
