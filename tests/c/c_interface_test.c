@@ -207,6 +207,40 @@ static void test_mesh(void) {
                       NULL, NULL, NULL) == MO_INVALID_ARGUMENT);
 }
 
+/* A path of edges, from vertex 0 to 1, from 1 to 2 and so on, with scrambled vertices and edges. */
+static void test_maps_of_a_mesh(void) {
+  enum { CELLS = 7, VERTICES = CELLS + 1 };
+  static const int32_t name_of_vertex[VERTICES] = {4, 0, 7, 2, 5, 1, 3, 6};
+  static const int32_t name_of_cell[CELLS] = {3, 5, 0, 6, 1, 4, 2};
+  int32_t cell_offsets[CELLS + 1] = {0};
+  int32_t cell_vertices[2 * CELLS] = {0};
+  int32_t vertices[2][VERTICES] = {{0}}; /* new to old, old to new */
+  int32_t cells[2][CELLS] = {{0}};
+  const mo_in offsets = in32(cell_offsets, CELLS + 1);
+  const mo_in ends = in32(cell_vertices, 2 * CELLS);
+  const mo_out vertex_order = out32(vertices[0], VERTICES);
+  const mo_out vertex_inverse = out32(vertices[1], VERTICES);
+  const mo_out cell_order = out32(cells[0], CELLS);
+  const mo_out cell_inverse = out32(cells[1], CELLS);
+  mo_options options = options_of("rcm");
+  int k;
+  for (k = 0; k <= CELLS; ++k) cell_offsets[k] = 2 * k;
+  for (k = 0; k < 2 * CELLS; ++k)
+    cell_vertices[2 * name_of_cell[k / 2] + k % 2] = name_of_vertex[k / 2 + k % 2];
+  options.element_method = "lexmax";
+  CHECK(mo_order_mesh(&offsets, &ends, NULL, VERTICES, NULL, 0, &options, &vertex_order, &vertex_inverse,
+                      &cell_order, &cell_inverse, NULL, NULL) == MO_OK);
+  for (k = 0; k < VERTICES; ++k) CHECK(vertices[1][vertices[0][k]] == k);
+  /* the vertices follow each other along the path, and so do the edges */
+  for (k = 0; k < CELLS; ++k) {
+    const int32_t* const edge = cell_vertices + 2 * cells[0][k];
+    const int32_t a = vertices[1][edge[0]];
+    const int32_t b = vertices[1][edge[1]];
+    CHECK((a == k && b == k + 1) || (a == k + 1 && b == k));
+    CHECK(cells[1][cells[0][k]] == k);
+  }
+}
+
 /* A path 1 - 2 - 3 - 4 whose vertices are taken in the order 2, 4, 1, 3. */
 static void test_edges(void) {
   static const int64_t pairs[6] = {1, 2, 3, 2, 3, 4};
@@ -322,6 +356,87 @@ static void test_fiedler(void) {
   options.tolerance = 0;
   output.type = MO_FLOAT;
   CHECK(mo_fiedler(&offsets, &neighbours, NULL, &options, &output, NULL) == MO_INVALID_ARGUMENT);
+}
+
+/* Cycles of six vertices whose edges are strong but for two opposite ones: each half stays together. */
+static void test_weights(void) {
+  static const int32_t cycle_offsets[7] = {0, 2, 4, 6, 8, 10, 12};
+  static const int32_t cycle_neighbours[12] = {5, 1, 0, 2, 1, 3, 2, 4, 3, 5, 4, 0};
+  const mo_in offsets = in32(cycle_offsets, 7);
+  const mo_in neighbours = in32(cycle_neighbours, 12);
+  mo_options options = options_of("fiedler");
+  int first;
+  options.tolerance = 1e-6;
+  for (first = 0; first < 3; ++first) {
+    double strengths[12];
+    float narrow[12];
+    int32_t old_to_new[6];
+    const mo_in weights = {strengths, 12, MO_DOUBLE};
+    const mo_in narrow_weights = {narrow, 12, MO_FLOAT};
+    const mo_out order = out32(old_to_new, 6);
+    mo_result result;
+    int v;
+    for (v = 0; v < 6; ++v) { /* the edges to the vertex before and to the vertex after */
+      strengths[2 * v] = (v + 5) % 3 == first ? 1 : 100;
+      strengths[2 * v + 1] = v % 3 == first ? 1 : 100;
+    }
+    for (v = 0; v < 12; ++v) narrow[v] = (float)strengths[v];
+    result.struct_size = sizeof result;
+    CHECK(mo_order_graph(&offsets, &neighbours, first == 0 ? &weights : &narrow_weights, NULL, 0, &options,
+                         NULL, &order, &result) == MO_OK);
+    for (v = 1; v < 6; ++v) {
+      const int is_cut = (v - 1) % 3 == first; /* between v - 1 and v */
+      CHECK(is_cut == ((old_to_new[v - 1] < 3) != (old_to_new[v] < 3)));
+    }
+    CHECK(result.lambda2 > 1.2);
+    CHECK(mo_fiedler(&offsets, &neighbours, &weights, &options, NULL, &result) == MO_OK);
+    CHECK(result.lambda2 > 1.2);
+    CHECK(mo_fiedler(&offsets, &neighbours, NULL, &options, NULL, &result) == MO_OK);
+    CHECK(result.lambda2 < 1.2); /* 1 */
+  }
+}
+
+/* A triangle and a path of four vertices. */
+static void test_largest_component(void) {
+  const double lambda2 = 0.585786437626904951; /* of the path: 2 - 2 cos(pi / 4) */
+  static const int32_t two_offsets[8] = {0, 2, 4, 6, 7, 9, 11, 12};
+  static const int32_t two_neighbours[12] = {1, 2, 0, 2, 0, 1, 4, 3, 5, 4, 6, 5};
+  const mo_in offsets = in32(two_offsets, 8);
+  const mo_in neighbours = in32(two_neighbours, 12);
+  mo_options options = options_of("fiedler");
+  mo_result results[2];
+  int k;
+  options.tolerance = 1e-8;
+  for (k = 0; k < 2; ++k) results[k].struct_size = sizeof results[k];
+  CHECK(mo_fiedler(&offsets, &neighbours, NULL, &options, NULL, &results[0]) == MO_OK);
+  CHECK(mo_order_graph(&offsets, &neighbours, NULL, NULL, 0, &options, NULL, NULL, &results[1]) == MO_OK);
+  for (k = 0; k < 2; ++k) {
+    CHECK(results[k].components == 2);
+    CHECK(results[k].lambda2 > lambda2 - 1e-6 && results[k].lambda2 < lambda2 + 1e-6);
+  }
+}
+
+/* Numbers that are as large as their count. */
+static void test_numbers_beyond(void) {
+  int32_t neighbours[8] = {0};
+  static const int32_t cell_offsets[2] = {0, 3};
+  const mo_in offsets = in32(offsets32, N + 1);
+  const mo_in beyond = in32(neighbours, 8);
+  const mo_in cells = in32(cell_offsets, 2);
+  const mo_in corners = in32(neighbours, 3);
+  int32_t numbers[N];
+  const mo_out order = out32(numbers, N);
+  mo_options options = options_of("rcm");
+  memcpy(neighbours, neighbours32, sizeof neighbours);
+  neighbours[2] = N;
+  CHECK(mo_order_graph(&offsets, &beyond, NULL, NULL, 0, &options, &order, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
+  CHECK(strstr(mo_last_error(), "neighbour 1 of row 1 is 5, outside 0 … 4") != NULL);
+  CHECK(mo_order_mesh(&cells, &corners, NULL, N, NULL, 0, &options, &order, NULL, NULL, NULL, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
+  neighbours[2] = 1;
+  CHECK(mo_order_mesh(&cells, &corners, NULL, N, NULL, 0, &options, &order, NULL, NULL, NULL, NULL, NULL) ==
+        MO_OK);
 }
 
 /* Messages name the argument that is wrong, and a call that returns nothing is refused. */
@@ -691,10 +806,14 @@ int main(void) {
   test_order_of_any_integers();
   test_defaults();
   test_mesh();
+  test_maps_of_a_mesh();
   test_edges();
   test_reorderer();
   test_alignment();
   test_fiedler();
+  test_weights();
+  test_largest_component();
+  test_numbers_beyond();
   test_messages();
   test_mistakes();
   test_smaller_structures();

@@ -55,6 +55,26 @@ TEST(BreadthFirstOrders, RcmListsNeighboursByDegree) {
   }
 }
 
+TEST(BreadthFirstOrders, RcmListsManyNeighboursByDegree) {
+  // a hub 0 with 50 neighbours, which have 0 to 6 leaves each
+  constexpr Index kNeighbours = 50;
+  std::vector<Edge> edges;
+  Index n = kNeighbours + 1;
+  for (Index v = 1; v <= kNeighbours; ++v) {
+    edges.push_back({0, v});
+    for (Index leaf = 0; leaf < v * 5 % 7; ++leaf) edges.push_back({v, n++});
+  }
+  const CsrGraph graph = graph_from_edges(n, edges);
+  const Permutation order = order_of(graph, "rcm");
+  std::vector<Index> degrees;  // of the neighbours in Cuthill and McKee's order
+  for (Index k = n - 1; k >= 0; --k) {
+    const Index v = order.new_to_old()[k];
+    if (v >= 1 && v <= kNeighbours) degrees.push_back(graph.degree(v));
+  }
+  // the search begins at a leaf of the first
+  EXPECT_TRUE(std::is_sorted(degrees.begin() + 1, degrees.end()));
+}
+
 TEST(BreadthFirstOrders, GoByLevelsFromOneEnd) {
   const CsrGraph graph = scrambled(test::grid(25, 10), 5);
   const Permutation order = order_of(graph, "bfs");

@@ -52,6 +52,13 @@ TEST(Check, NamesTheFault) {
   const std::vector<std::uint32_t> offsets{1, 3, 4, 6};
   const std::vector<std::int64_t> neighbours{2, 3, 1, 1, 4};
   EXPECT_EQ(fault({offsets, neighbours, {}, 1}), "graph: neighbour 1 of row 3 is 4, outside 1 … 3");
+  // arrays that are used in place
+  for (const Check level : {Check::full, Check::fast}) {
+    EXPECT_EQ(fault(Arrays{{0, 1, 2}, {1, 2}}.view(), level),
+              "graph: neighbour 0 of row 1 is 2, outside 0 … 1");
+    EXPECT_EQ(fault(Arrays{{0, 1, 2}, {1, -1}}.view(), level),
+              "graph: neighbour 0 of row 1 is -1, outside 0 … 1");
+  }
   EXPECT_EQ(fault({offsets, neighbours}), "graph: the first offset is 1, must be the base 0");
   EXPECT_EQ(fault(Arrays{{0, 2, 1}, {1}}.view()),
             "graph: the offset of row 1 is 2, that of the next row only 1");

@@ -36,6 +36,24 @@ TEST(CsrGraph, FromEdgesDropsLoopsAndRepeats) {
   EXPECT_THROW(graph_from_edges(2, edges), InvalidArgument);
 }
 
+TEST(CsrGraph, FromEdgesRefusesEveryEndOutOfRange) {
+  for (const Index end : {-1, 3}) {
+    for (const Edge edge : {Edge{0, end}, Edge{end, 0}})
+      EXPECT_THROW(graph_from_edges(3, std::vector<Edge>{{1, 2}, edge}), InvalidArgument) << end;
+  }
+  EXPECT_EQ(graph_from_edges(3, std::vector<Edge>{{0, 2}}).edge_count(), 1);
+}
+
+TEST(TidyRows, KeepsOrDropsLoops) {
+  for (const bool keeps_loops : {false, true}) {
+    std::vector<Offset> starts{0, 4, 5, 7};
+    std::vector<Index> columns{2, 0, 1, 0, 1, 2, 0};
+    tidy_rows(starts, columns, keeps_loops);
+    EXPECT_EQ(starts, keeps_loops ? (std::vector<Offset>{0, 3, 4, 6}) : (std::vector<Offset>{0, 2, 2, 3}));
+    EXPECT_EQ(columns, keeps_loops ? (std::vector<Index>{0, 1, 2, 1, 0, 2}) : (std::vector<Index>{1, 2, 0}));
+  }
+}
+
 TEST(VertexGraph, JoinsExactlyThePairsOfACommonElement) {
   const Incidence elements = elements_of_size(50, 60, 4, 1);
   std::set<std::pair<Index, Index>> pairs;

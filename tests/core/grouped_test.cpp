@@ -33,6 +33,7 @@ TEST(OrderInGroups, IsTheMethodsOrderOfEachGroupsOwnGraph) {
     const Order order = order_graph_in_groups(method.name, {graph, points}, group_of, 4);
     EXPECT_EQ(order.method, (MethodChoice{std::string(method.name), ""}));
     std::vector<Index> expected;
+    std::vector<double> vector;
     std::size_t components = 0;
     for (Index group = 0; group < 4; ++group) {
       std::vector<Index> members;
@@ -46,9 +47,13 @@ TEST(OrderInGroups, IsTheMethodsOrderOfEachGroupsOwnGraph) {
       const Order alone = order_graph(method.name, {subgraph, of_members});
       for (const Index k : alone.permutation.new_to_old()) expected.push_back(members[k]);
       components += alone.fiedler.size();
+      if (alone.vector.empty()) continue;
+      vector.resize(group_of.size());
+      for (std::size_t k = 0; k < members.size(); ++k) vector[members[k]] = alone.vector[k];
     }
     EXPECT_THAT(order.permutation.new_to_old(), testing::ElementsAreArray(expected));
     EXPECT_EQ(order.fiedler.size(), components);
+    EXPECT_EQ(order.vector, vector);
   }
 }
 
