@@ -89,7 +89,6 @@ Table protocol_table(const StudyResults& results) {
               {}};
   add(table, "Began", text_cell(results.began));
   if (!results.scenarios.empty()) {
-    add(table, "Sizes of the meshes", text_cell(results.size));
     add(table, "Steps",
         text_cell(of_scenarios(results, [](const ScenarioRecord& s) { return fmt::format("{}", s.steps); })));
     add(table, "Runs of each", count_cell(results.runs));
