@@ -24,8 +24,8 @@ Warnings are lines on stderr that begin with `meshorder: warning: `. `--quiet` p
 
 
 def escaped(text: str) -> str:
-    """Help as Markdown: options and what stands in backquotes are code, the rest must not be read as markup."""
-    text = re.sub(r"(?<![`\w-])(--[a-z][a-z-]*)(?![^`]*`(?:[^`]*`[^`]*`)*[^`]*$)", r"`\1`", text)
+    """Help as Markdown: options, `--` and what stands in backquotes are code, the rest must not be read as markup."""
+    text = re.sub(r"(?<![`\w-])(--(?:[a-z][a-z-]*)?)(?![^`]*`(?:[^`]*`[^`]*`)*[^`]*$)", r"`\1`", text)
     parts = re.split(r"(`[^`]*`)", text)
     return "".join(part if part.startswith("`") else re.sub(r"([\\*_<>\[\]|])", r"\\\1", part) for part in parts)
 
