@@ -242,9 +242,9 @@ TEST_F(FluidTest, a_dam_breaks_as_measured) {
        {std::pair(0.56, 0.94), std::pair(0.77, 0.89), std::pair(0.93, 0.83), std::pair(1.08, 0.78),
         std::pair(1.28, 0.72), std::pair(1.46, 0.67), std::pair(1.66, 0.61), std::pair(1.84, 0.56)})
     EXPECT_NEAR(at(heights, time) / 2, height, 0.02) << time;
+  // then the simulated column falls more slowly
   for (const auto& [time, height] : {std::pair(2.0, 0.5), std::pair(2.21, 0.44), std::pair(2.45, 0.39)})
-    EXPECT_NEAR(at(heights, time) / 2, height + 0.03, 0.02)
-        << time;  // the simulated column falls more slowly
+    EXPECT_NEAR(at(heights, time) / 2, height + 0.03, 0.02) << time;
   const double measured = (3.89 - 1.67) / (3.11 - 1.43);
   EXPECT_NEAR((at(fronts, 3.11) - at(fronts, 1.43)) / (3.11 - 1.43), measured, 0.05 * measured);
 }
