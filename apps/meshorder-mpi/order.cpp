@@ -246,7 +246,8 @@ nlohmann::ordered_json json_of(const Finished& run) {
       {"cells", {{"count", run.cells}, {"method", is_matrix ? "original" : "lexmax"}}}};
   result.update(to_json(run.options, run.report, run.peaks));
   result["fiedler"] = command::to_json(run.report.fiedler);
-  result["maps"] = run.outputs.maps();
+  result["files"] = run.outputs.written().mesh;
+  result["maps"] = run.outputs.written().maps;
   if (!arguments.pieces.empty()) {
     result["pieces"] = {{"file", run.outputs.pieces_file()},
                         {"ghost_layers", arguments.ghosts},
@@ -271,14 +272,14 @@ void print(const Finished& run, Notes notes) {
   console.warn_of(notes);
   print_report(console, run.options, run.report, run.peaks, stored);
   const char* const by = run.by_all ? ", read and written by all ranks" : "";
-  if (!arguments.output.empty()) console.print("{:<10} {}{}", "wrote", arguments.output, by);
+  if (!arguments.output.empty()) console.print("{:<10} {}{}", "wrote", join(run.outputs.written().mesh), by);
   if (!arguments.pieces.empty()) {
     const distributed::PiecesReport& pieces = run.outputs.pieces();
     console.print("{:<10} {}{}", "wrote", run.outputs.pieces_file(), by);
     console.print("{:<10} {} pieces with {} ghost vertices and {} ghost cells in all", "", run.report.parts,
                   with_commas(pieces.ghost_vertices), with_commas(pieces.ghost_cells));
   }
-  for (const std::string& file : run.outputs.maps()) console.print("{:<10} {}", "", file);
+  for (const std::string& file : run.outputs.written().maps) console.print("{:<10} {}", "", file);
   console.print_json(json_of(run));
   flush_stdout();
 }

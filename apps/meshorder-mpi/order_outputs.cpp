@@ -104,8 +104,9 @@ void OrderOutputs::write(const distributed::FileHead& head, const distributed::D
     moved.write({file.path(), files_.output, data ? data->path() : "", name_of_data});
     file.commit();
     if (data) data->commit();
+    written_.mesh = files_of_mesh(set_, files_.output);
     if (!files_.maps.empty()) {
-      maps_ =
+      written_.maps =
           write_sliced_maps(communicator_, {order.new_vertices, moved.new_cells(), order.report.part_starts},
                             before, moved.slice(), files_.maps, set_);
     }
@@ -119,7 +120,7 @@ void OrderOutputs::write(const distributed::ExodusSlices& slices, const distribu
       communicator_, slices.read_part(communicator_, notes), order,
       files_.has_nemesis_pieces() ? slices.block_ends() : std::vector<distributed::GlobalIndex>(), notes);
   if (!files_.maps.empty()) {
-    maps_ =
+    written_.maps =
         write_sliced_maps(communicator_,
                           {order.new_vertices, moved.new_places(Association::cells), order.report.part_starts,
                            moved.ids(Association::vertices), moved.ids(Association::cells)},
@@ -132,7 +133,7 @@ void OrderOutputs::write(const distributed::ExodusSlices& slices, const distribu
 }
 
 void OrderOutputs::write(const MeshToOrder& whole, const distributed::DistributedOrder& order, Notes& notes) {
-  communicator_.at_root([&] { maps_ = write_ordered(whole, files_, set_, notes); });
+  communicator_.at_root([&] { written_ = write_ordered(whole, files_, set_, notes); });
   if (files_.pieces.empty()) return;
   if (files_.has_nemesis_pieces()) return write_nemesis(whole, order.report, notes);
   Notes of_pieces;

@@ -65,8 +65,8 @@ class OrderOutputs {
 
   void commit(Notes& notes);
 
-  /// Returns, at the root, the paths of all files but the output and the pieces.
-  [[nodiscard]] const std::vector<std::string>& maps() const noexcept { return maps_; }
+  /// Returns, at the root, the paths of all files but the pieces.
+  [[nodiscard]] const WrittenFiles& written() const noexcept { return written_; }
   /// Returns, at the root, the path of the file that lists or contains the pieces, or of the first piece in
   /// Nemesis; empty without pieces.
   [[nodiscard]] std::string pieces_file() const {
@@ -93,7 +93,7 @@ class OrderOutputs {
   std::optional<PieceOutputs> pieces_;
   std::optional<NemesisOutputs> nemesis_;  ///< at the root
   OutputSet set_;
-  std::vector<std::string> maps_;
+  WrittenFiles written_;
   distributed::PiecesReport pieces_report_;
 };
 

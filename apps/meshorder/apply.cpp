@@ -6,6 +6,7 @@
 #include "console.hpp"
 #include "io/format.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/output_set.hpp"
 #include "maps.hpp"
 #include "mesh/reorder.hpp"
 #include "mesh_files.hpp"
@@ -64,14 +65,21 @@ void run(const ApplyArguments& arguments) {
   (void)keep_wanted(mesh, arguments.input, arguments.keeping.dimension, notes);
 
   progress.stage("writing " + arguments.output, 0.5, 1);
-  write_mesh(mesh, arguments.output, {.strict = arguments.keeping.strict, .notes = &notes});
+  check_mesh(mesh);
+  OutputSet outputs;
+  (void)write_mesh_to(mesh, {arguments.output, outputs},
+                      {.strict = arguments.keeping.strict, .notes = &notes});
+  const std::vector<std::string> files = files_of_mesh(outputs, arguments.output);
+  outputs.commit();
+  notes.insert(notes.end(), outputs.notes().begin(), outputs.notes().end());
   progress.finish();
   console.warn_of(notes);
-  console.print("wrote {}: {} vertices and {} cells {}", arguments.output, with_commas(mesh.vertex_count()),
+  console.print("wrote {}: {} vertices and {} cells {}", join(files), with_commas(mesh.vertex_count()),
                 with_commas(mesh.cell_count()),
                 arguments.inverse ? "restored to the old order" : "reordered");
   console.print_json({{"input", arguments.input},
                       {"output", arguments.output},
+                      {"files", files},
                       {"inverse", arguments.inverse},
                       {"vertices", mesh.vertex_count()},
                       {"cells", mesh.cell_count()},

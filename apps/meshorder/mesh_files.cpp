@@ -9,6 +9,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+
 namespace meshorder::command {
 
 void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids,
@@ -51,17 +53,27 @@ MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t by
   return result;
 }
 
-std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
-                                       Notes& notes) {
-  if (!files.output.empty())
+std::vector<std::string> files_of_mesh(const OutputSet& outputs, const std::string& output) {
+  std::vector<std::string> files = outputs.files();
+  std::ranges::stable_partition(files, [&](const std::string& file) { return file == output; });
+  return files;
+}
+
+WrittenFiles write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
+                           Notes& notes) {
+  WrittenFiles written;
+  if (!files.output.empty()) {
     write_arranged(ordered.mesh, {files.output, outputs}, {.strict = files.keeping.strict, .notes = &notes},
                    *ordered.format);
-  if (files.maps.empty()) return {};
+    written.mesh = files_of_mesh(outputs, files.output);
+  }
+  if (files.maps.empty()) return written;
   MeshChecksums after = checksums_of(ordered.mesh);
   // a matrix or graph is written as it was read, without the points given for its rows
   const bool lacks_points = ordered.format->name == "MatrixMarket" || ordered.format->name == "METIS";
   if (!files.points.empty() && lacks_points) after.points = ordered.before.points;
-  return write_maps(ordered.maps, ordered.before, after, files.maps, outputs);
+  written.maps = write_maps(ordered.maps, ordered.before, after, files.maps, outputs);
+  return written;
 }
 
 }  // namespace meshorder::command

@@ -49,10 +49,19 @@ std::vector<Index> keep_wanted(Mesh& mesh, const std::string& input, int dimensi
 /// @param bytes_of_entry  as in `limit_joins`
 MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
 
+/// The paths of the files of a mesh and of its maps.
+struct WrittenFiles {
+  std::vector<std::string> mesh;  ///< the output first, then files beside it, as the .ele of a .node
+  std::vector<std::string> maps;
+};
+
+/// Returns the files of a set to which only a mesh was written, the one named `output` first.
+std::vector<std::string> files_of_mesh(const OutputSet& outputs, const std::string& output);
+
 /// Writes a mesh in its new order, and its maps, as files of a set, whose `commit` puts them in place. The
-/// permutations of the maps must be set. Returns the paths of the maps. Writes no mesh if the output's name
-/// is empty, and no maps if their prefix is.
-std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
-                                       Notes& notes);
+/// permutations of the maps must be set. Writes no mesh if the output's name is empty, and no maps if their
+/// prefix is.
+WrittenFiles write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
+                           Notes& notes);
 
 }  // namespace meshorder::command

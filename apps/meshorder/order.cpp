@@ -158,7 +158,7 @@ class Ordering {
   void write() {
     progress_.stage("writing " + arguments_.output, 0.7, 1);
     OutputSet outputs;
-    map_files_ = write_ordered(job_, arguments_, outputs, notes_);
+    written_ = write_ordered(job_, arguments_, outputs, notes_);
     times_.end("write");
     outputs.commit();
     notes_.insert(notes_.end(), outputs.notes().begin(), outputs.notes().end());
@@ -176,8 +176,8 @@ class Ordering {
     if (has_new_numbers(job_.mesh, order_, *job_.format, options_.ids)) {
       console_.print("{:<10} {}", "numbers", "new for vertices and cells; --ids keep keeps the old ones");
     }
-    console_.print("{:<10} {}", "wrote", arguments_.output);
-    for (const std::string& file : map_files_) console_.print("{:<10} {}", "", file);
+    console_.print("{:<10} {}", "wrote", join(written_.mesh));
+    for (const std::string& file : written_.maps) console_.print("{:<10} {}", "", file);
     if (arguments_.timings) times_.print(console_);
     console_.print_json(to_json());
   }
@@ -208,6 +208,7 @@ class Ordering {
   [[nodiscard]] nlohmann::ordered_json to_json() const {
     return {{"input", arguments_.input},
             {"output", arguments_.output},
+            {"files", written_.mesh},
             {"vertices", half_json(job_.mesh.vertex_count(), order_.vertices)},
             {"cells", half_json(job_.mesh.cell_count(), order_.cells)},
             {"for", to_string(options_.order.workload)},
@@ -217,7 +218,7 @@ class Ordering {
              {{"before", command::to_json(spans_.before)}, {"after", command::to_json(spans_.after)}}},
             {"fiedler", command::to_json(order_.vertices.fiedler)},
             {"element_fiedler", command::to_json(order_.cells.fiedler)},
-            {"maps", map_files_},
+            {"maps", written_.maps},
             {"seconds",
              {{"read", times_.seconds("read")},
               {"order", times_.seconds("graph") + times_.seconds("race") + times_.seconds("order") +
@@ -238,7 +239,7 @@ class Ordering {
   std::optional<Race> raced_;
   MeshOrder order_;
   SpanChange spans_;
-  std::vector<std::string> map_files_;
+  WrittenFiles written_;
 };
 
 void run(const OrderArguments& arguments) {

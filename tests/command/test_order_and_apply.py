@@ -179,6 +179,22 @@ def test_files_do_not_hold_when_they_were_written(command, tmp_path):
     assert [name for name in written[0] if written[1][name] != written[0][name]] == []
 
 
+@pytest.mark.parametrize("output, others", [("b.vtu", []), ("b.node", ["b.ele"]), ("b.ele", ["b.node"]), ("b.xdmf", ["b.h5"])])
+def test_all_written_files_are_named(command, tmp_path, output, others):
+    write_boxes(tmp_path)
+    files = [output, *others]
+    before = set(tmp_path.iterdir())
+    *_, line, first_map = command.ok("order", "a.vtu", "-o", output, "--maps", "m").stdout.splitlines()[:-4]
+    ordered = command.json("order", "a.vtu", "-o", output, "--maps", "m")
+    assert ordered["output"] == output and ordered["files"] == files
+    assert {path.name for path in set(tmp_path.iterdir()) - before} == {*files, *ordered["maps"]}
+    assert line.split() == ["wrote", *", ".join(files).split()] and first_map.split() == ordered["maps"][:1]
+    applied = command.ok("apply", "m", output, "-o", f"c{output[1:]}", "--inverse").stdout
+    assert applied.startswith(f"wrote {', '.join(files).replace('b.', 'c.')}: ")
+    assert command.json("apply", "m", output, "-o", f"c{output[1:]}", "--inverse")["files"] == \
+        [f"c{name[1:]}" for name in files]
+
+
 @pytest.mark.parametrize("extension", ["vtu", "vtk", "msh", "node", "mesh", "veg", "su2", "xdmf", "cgns", "med", "vtkhdf"])
 def test_maps_know_whether_they_were_applied(command, tmp_path, extension):
     write_boxes(tmp_path)

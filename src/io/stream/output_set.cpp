@@ -123,6 +123,12 @@ void OutputSet::add(OutputFile&& file) {
   files_.push_back(std::move(file));
 }
 
+std::vector<std::string> OutputSet::files() const {
+  std::vector<std::string> paths;
+  for (const OutputFile& file : files_) paths.push_back(file.target().string());
+  return paths;
+}
+
 void OutputSet::commit() {
   std::vector<OutputFile> files = std::exchange(files_, {});
   std::vector<FinishedFile> finished;

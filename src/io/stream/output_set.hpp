@@ -37,6 +37,9 @@ class OutputSet {
   /// Puts all files in place. Throws InputError as `put_in_place`.
   void commit();
 
+  /// Returns the paths of the files added since the last `commit`.
+  [[nodiscard]] std::vector<std::string> files() const;
+
   /// Returns notes on replaced files with further hard links, which keep the old content.
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
