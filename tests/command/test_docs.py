@@ -127,6 +127,12 @@ def test_the_two_studies_compare_as_committed(command, tmp_path, monkeypatch):
     assert (tmp_path / "comparison.md").read_text() == (committed / "comparison.md").read_text()
 
 
+def test_the_manual_keeps_the_hyphens_of_the_help(monkeypatch):
+    monkeypatch.syspath_prepend(conftest.ROOT / "docs" / "site")
+    import command_reference
+    assert command_reference.escaped("after --. Write `a --b` or --json") == "after `--`. Write `a --b` or `--json`"
+
+
 def test_each_page_is_in_the_contents():
     """The builder of the manual requires this, but CI reaches it an hour later."""
     docs = conftest.ROOT / "docs"
