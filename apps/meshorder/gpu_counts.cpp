@@ -22,8 +22,11 @@
 namespace meshorder::command {
 namespace {
 
-constexpr std::array kCards{
-    GpuCard{.name = "h100", .title = "an NVIDIA H100", .launch_us = 4.0, .us_per_sector = 15.9e-6}};
+constexpr std::array kCards{GpuCard{.name = "h100",
+                                    .title = "an NVIDIA H100",
+                                    .launch_us = 4.0,
+                                    .us_per_sector = 15.9e-6,
+                                    .us_per_byte = 1.65e-6}};
 
 /// Fewest tetrahedra for which times are shown; the smallest mesh in the tests of times has 161,222.
 constexpr Index kFewestTimed = 100'000;
@@ -39,10 +42,6 @@ constexpr std::array<std::string_view, kLanes.size()> kProductKeys{"product_1", 
 /// Returns whether times of element forces are known for a layout.
 bool has_times(GpuLayout layout) {
   return layout == GpuLayout::packed || layout == GpuLayout::apart || layout == GpuLayout::padded;
-}
-
-double time_on(const GpuCard& card, const GpuCost& cost) {
-  return card.launch_us + card.us_per_sector * static_cast<double>(cost.sectors);
 }
 
 /// Returns whether times are known for the elements of a mesh.
@@ -67,8 +66,8 @@ std::vector<CountedKernel> counted_additions(const Mesh& mesh, const MeshOrder& 
     CountedKernel kernel{
         .key = to_string(layout), .title = kAdditions[k], .as_is = *before, .ordered = *after};
     if (has_card && has_times(layout)) {
-      kernel.as_is_us = time_on(*card, *before);
-      kernel.ordered_us = time_on(*card, *after);
+      kernel.as_is_us = card->time(*before);
+      kernel.ordered_us = card->time(*after);
     }
     kernels.push_back(kernel);
   }
@@ -105,7 +104,7 @@ bool is_empty(const GpuReport& report) { return report.additions.empty() && repo
 bool is_bound_by_launches(const GpuReport& report) {
   const GpuCard& card = kCards.front();
   const auto is_short = [&](const CountedKernel& kernel) {
-    return time_on(card, kernel.as_is) < 2 * card.launch_us;
+    return card.time(kernel.as_is) < 2 * card.launch_us;
   };
   return std::ranges::all_of(report.additions, is_short) && std::ranges::all_of(report.products, is_short);
 }
@@ -151,6 +150,12 @@ std::optional<GpuCost> cost_of_additions(const Mesh& mesh, GpuLayout layout) {
 double sector_ratio(const GpuCost& as_is, const GpuCost& ordered) {
   return static_cast<double>(std::max<Offset>(as_is.sectors, 1)) /
          static_cast<double>(std::max<Offset>(ordered.sectors, 1));
+}
+
+double GpuCard::time(const GpuCost& cost) const {
+  const Offset again = std::max<Offset>(cost.dram_bytes - cost.dram_floor, 0);
+  return launch_us + std::hypot(us_per_sector * static_cast<double>(cost.sectors),
+                                us_per_byte * static_cast<double>(again));
 }
 
 std::vector<std::string> gpu_card_names() {

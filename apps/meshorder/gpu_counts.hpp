@@ -32,13 +32,17 @@ std::optional<GpuCost> cost_of_additions(const Mesh& mesh, GpuLayout layout);
 double sector_ratio(const GpuCost& as_is, const GpuCost& ordered);
 
 /// A graphics processor with known times of element forces of tetrahedra in single precision, for the layouts
-/// packed, apart and padded. A time is a constant for the launch, plus a constant for each sector
-/// (benchmarks/gpu_card.py).
+/// packed, apart and padded (benchmarks/gpu_card.py).
 struct GpuCard {
   std::string_view name;   ///< value of --card
   std::string_view title;  ///< in a sentence
   double launch_us;
   double us_per_sector;
+  double us_per_byte;  ///< for each byte that is read from memory more than once
+
+  /// Returns the time of a kernel in µs. The times of sectors and of bytes are added as the sides of a right
+  /// angle, since they overlap in part.
+  [[nodiscard]] double time(const GpuCost& cost) const;
 };
 
 std::vector<std::string> gpu_card_names();
