@@ -187,7 +187,7 @@ def row(found):
     auto = next((order for order in orders if order["by_auto"]), None)
     best = next(order for order in orders if order["name"] == found["best"])
     iterations = "" if own["count"] is None else f"{own['count']:.0f} → {best['count']:.0f}"
-    gain_of_best = gain(best) if found["verdict"] != "undecided" else f"none found, {gain(best)}"
+    gain_of_best = gain(best) if found["verdict"] in ("faster", "slower", "tie") else "not told apart"
     return (f"| {found['title']} | {number(own['time'])} s | {found['best']} | {gain_of_best} | "
             f"{gain(auto) if auto else 'stays'} | {iterations} |")
 

@@ -25,6 +25,8 @@
 #include <filesystem>
 #include <new>
 #include <sstream>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace meshorder::command {
@@ -102,6 +104,14 @@ int run(const Program& program, std::vector<std::string> arguments) {
   return 0;
 }
 
+/// Returns whether a failure is that the system starts no further thread: oneTBB says so in a text, and
+/// std::thread by an error number.
+bool is_lack_of_threads(const std::exception& failure) {
+  const auto* const error = dynamic_cast<const std::system_error*>(&failure);
+  return std::string_view(failure.what()).find("pthread_create") != std::string_view::npos ||
+         (error != nullptr && error->code() == std::errc::resource_unavailable_try_again);
+}
+
 /// Runs the program and reports failures; returns the exit status.
 int run_and_report(const Program& program, int argc, char** argv) {
   try {
@@ -117,7 +127,9 @@ int run_and_report(const Program& program, int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return report_failure("out of memory", kOwnFailure);
   } catch (const std::exception& error) {
-    return report_failure(error.what(), kOwnFailure);
+    if (!is_lack_of_threads(error)) return report_failure(error.what(), kOwnFailure);
+    return report_failure(
+        "no thread can be started; give --threads 1, or raise the limit on processes (ulimit -u)", kBadInput);
   } catch (...) {
     return report_failure("unknown failure", kOwnFailure);
   }

@@ -14,15 +14,17 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <numeric>
 #include <system_error>
+#include <unordered_map>
 #include <utility>
 
 namespace meshorder::command {
 namespace {
 
 constexpr std::size_t kLongestLine = 10'000;
-constexpr std::string_view kSeparators = " \t\r\n,;";
+constexpr std::string_view kSeparators = " \t\r,;";
 
 /// Calls `use` with each line of a text, cut after `kLongestLine` characters.
 template <class Use>
@@ -77,6 +79,67 @@ Closeness closeness(double tolerance, double largest) {
 double larger(double largest, double number) {
   return std::isfinite(number) ? std::max(largest, std::abs(number)) : largest;
 }
+
+/// Returns whether a word is a sign and digits alone.
+bool is_integer(std::string_view word) {
+  if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
+  return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// Reads a text word by word. Numbers have a kind: lines of equally many words, each line under the same
+/// heading, form a table, and the numbers in a column of it are of one kind. A heading is the last line that
+/// has words besides numbers; the numbers in it do not count.
+class Words {
+ public:
+  explicit Words(std::string_view text) : rest_(text) {}
+
+  /// Goes on to the next word; returns false at the end, where the word is empty.
+  bool next() {
+    while (++at_ >= words_.size()) {
+      words_.clear();
+      if (rest_.empty()) return false;
+      read_line();
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::string_view text() const {
+    return at_ < words_.size() ? words_[at_].text : std::string_view();
+  }
+  [[nodiscard]] std::optional<double> number() const {
+    return at_ < words_.size() ? words_[at_].number : std::nullopt;
+  }
+  [[nodiscard]] std::size_t kind() const { return mixed(mixed(heading_, words_.size()), at_); }
+
+ private:
+  struct Word {
+    std::string_view text;
+    std::optional<double> number;
+  };
+
+  static std::size_t mixed(std::size_t hash, std::size_t with) {
+    constexpr std::size_t kFactor = 1099511628211U;
+    return (hash ^ with) * kFactor;
+  }
+
+  void read_line() {
+    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+    std::string_view line = rest_.substr(0, end);
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    std::size_t heading = 0;
+    for (std::string_view word; !(word = next_word(line, kSeparators)).empty();) {
+      words_.push_back({word, number_of(word)});
+      if (!words_.back().number) heading = mixed(heading, std::hash<std::string_view>{}(word));
+    }
+    if (heading != 0) heading_ = heading;
+    at_ = static_cast<std::size_t>(-1);
+  }
+
+  std::string_view rest_;
+  std::vector<Word> words_;  // of the line
+  std::size_t at_ = static_cast<std::size_t>(-1);
+  std::size_t heading_ = 0;
+};
 
 std::regex compiled(const std::string& option, const std::string& pattern) {
   try {
@@ -150,19 +213,48 @@ std::string difference(const std::vector<double>& expected, const std::vector<do
 }
 
 std::string difference(std::string_view expected, std::string_view found, double tolerance) {
-  double largest = 0;
-  for (std::string_view rest = expected, word; !(word = next_word(rest, kSeparators)).empty();)
-    largest = larger(largest, number_of(word).value_or(0));
-  const Closeness allowed = closeness(tolerance, largest);
-  for (;;) {
-    const std::string_view a = next_word(expected, kSeparators);
-    const std::string_view b = next_word(found, kSeparators);
-    if (a.empty() && b.empty()) return {};
-    const std::optional<double> x = number_of(a);
-    const std::optional<double> y = number_of(b);
-    if (x && y ? allowed.agree(*x, *y) : a == b) continue;
-    return fmt::format("'{}' instead of '{}'", utf8_prefix(b, 40), utf8_prefix(a, 40));
+  std::unordered_map<std::size_t, double> largest;  // by kind
+  double largest_of_all = 0;
+  for (Words words(expected); words.next();) {
+    if (!words.number()) continue;
+    double& of_kind = largest.try_emplace(words.kind(), 0).first->second;
+    of_kind = larger(of_kind, *words.number());
+    largest_of_all = larger(largest_of_all, *words.number());
   }
+  Words a(expected);
+  Words b(found);
+  for (;;) {
+    const bool has_ended = !a.next();
+    if (!b.next() && has_ended) return {};
+    if (a.number() && b.number()) {
+      Closeness allowed = closeness(tolerance, largest_of_all);
+      if (!is_integer(a.text()) || !is_integer(b.text()))
+        allowed.floor = std::max(allowed.floor, tolerance * largest[a.kind()]);
+      if (allowed.agree(*a.number(), *b.number())) continue;
+    } else if (a.text() == b.text()) {
+      continue;
+    }
+    return fmt::format("'{}' instead of '{}'", utf8_prefix(b.text(), 40), utf8_prefix(a.text(), 40));
+  }
+}
+
+std::string why_not_comparable(std::string_view text) {
+  std::unordered_map<std::size_t, bool> is_finite;  // by kind: whether a number is
+  std::unordered_map<std::size_t, std::string_view> examples;
+  bool is_empty = true;
+  for (Words words(text); words.next();) {
+    is_empty = false;
+    if (!words.number()) continue;
+    const bool is_finite_here = std::isfinite(*words.number());
+    bool& of_kind = is_finite.try_emplace(words.kind(), false).first->second;
+    of_kind = of_kind || is_finite_here;
+    if (!is_finite_here) examples.try_emplace(words.kind(), words.text());
+  }
+  if (is_empty) return "it is empty";
+  for (const auto& [kind, example] : examples) {
+    if (!is_finite[kind]) return fmt::format("it has '{}' where a number should be", example);
+  }
+  return {};
 }
 
 std::vector<std::filesystem::path> printed_files(const std::filesystem::path& log) {

@@ -26,6 +26,9 @@ class PrintedNumbers {
   /// InvalidArgument if nothing matches, or if a match is not a number.
   [[nodiscard]] std::vector<double> find(const std::vector<std::filesystem::path>& files) const;
 
+  /// Returns the option with its expression, for messages.
+  [[nodiscard]] std::string name() const { return option_ + ' ' + pattern_; }
+
  private:
   std::string option_;
   std::string pattern_;
@@ -37,9 +40,14 @@ class PrintedNumbers {
 std::string difference(const std::vector<double>& expected, const std::vector<double>& found,
                        double tolerance);
 
-/// Returns the first difference of two texts in words; empty if none. Compares numbers with the limits above
-/// and other words exactly.
+/// Returns the first difference of two texts in words; empty if none. Compares words exactly, integers with
+/// the limits above, and other numbers up to the tolerance relative to the largest number of their kind in
+/// `expected`: the same column under the same heading.
 std::string difference(std::string_view expected, std::string_view found, double tolerance);
+
+/// Returns why a text cannot be compared: it has no words, or all numbers of a kind are NaN or infinite.
+/// Empty if it can be compared.
+std::string why_not_comparable(std::string_view text);
 
 /// Returns the files that hold a program's stdout and stderr; see TrialCommand::log.
 std::vector<std::filesystem::path> printed_files(const std::filesystem::path& log);

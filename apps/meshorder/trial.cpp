@@ -14,7 +14,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <optional>
 #include <string>
@@ -56,8 +58,11 @@ class TrialReadings {
   std::string read(TriedOrder& order, double& time);
 
  private:
+  [[nodiscard]] std::vector<double> found_by(const PrintedNumbers& expression) const;
+
   const TrialFolder& folder_;
   double tolerance_;
+  double timeout_seconds_;
   std::string same_file_;
   std::optional<PrintedNumbers> time_;
   std::optional<PrintedNumbers> count_;
@@ -70,6 +75,7 @@ TrialReadings::TrialReadings(const TrialOptions& options, const TrialSubject& su
                              const TrialFolder& folder)
     : folder_(folder),
       tolerance_(options.tolerance),
+      timeout_seconds_(options.timeout_seconds),
       same_file_(with_places(options.same_file, subject, folder)) {
   if (options.time != "cpu" && options.time != "wall") time_.emplace("--time", options.time);
   if (!options.count.empty()) count_.emplace("--count", options.count);
@@ -80,14 +86,59 @@ TrialReadings::TrialReadings(const TrialOptions& options, const TrialSubject& su
                           ": give its path in the folder that the program runs in, or {out}");
 }
 
-std::string TrialReadings::read(TriedOrder& order, double& time) {
+/// Returns the numbers that an expression finds. Matches in a child process: an expression may take forever,
+/// and a long line may exhaust the stack.
+std::vector<double> TrialReadings::found_by(const PrintedNumbers& expression) const {
+  constexpr double kSeconds = 10;
+  constexpr double kBytesASecond = 1e6;
   const std::vector<fs::path> printed = printed_files(folder_.log());
-  if (time_) time = time_->find(printed).back();
-  if (time <= 0) throw InvalidArgument(fmt::format("a time of {} cannot be compared", time));
-  if (count_) order.count = count_->find(printed).back();
+  const fs::path result = folder_.log().string() + ".numbers";
+  double seconds = kSeconds;
+  for (const fs::path& file : printed) seconds += static_cast<double>(fs::file_size(file)) / kBytesASecond;
+  seconds = std::min(seconds, timeout_seconds_);
+  const TrialRun run = run_in_child(
+      [&] {
+        std::ofstream file(result);
+        file.exceptions(std::ios::failbit | std::ios::badbit);
+        try {
+          const std::vector<double> numbers = expression.find(printed);
+          file << "numbers:";
+          for (const double number : numbers) file << fmt::format(" {}", number);
+        } catch (const InvalidArgument& fault) {
+          file << fault.what();
+        }
+        file.close();
+      },
+      seconds);
+  if (!run.succeeded()) {
+    throw InvalidArgument(
+        fmt::format("{}: {}; write an expression without a repetition in a repetition", expression.name(),
+                    run.timed_out ? fmt::format("matching it takes more than {}", duration(seconds))
+                                  : "matching it fails for lack of memory"));
+  }
+  const std::string text = FilePath(result).read();
+  std::string_view rest = text;
+  if (next_word(rest) != "numbers:") throw InvalidArgument(text);
+  std::vector<double> numbers;
+  for (std::string_view word; !(word = next_word(rest)).empty();) numbers.push_back(number_of(word).value());
+  return numbers;
+}
+
+std::string TrialReadings::read(TriedOrder& order, double& time) {
+  if (time_) time = found_by(*time_).back();
+  if (!(time > 0) || std::isinf(time))
+    throw InvalidArgument(fmt::format("a time of {} cannot be compared", time));
+  if (count_) order.count = found_by(*count_).back();
+  if (count_ && !std::isfinite(order.count))
+    throw InvalidArgument(fmt::format("a count of {} cannot be compared", order.count));
   std::string found;
   if (same_) {
-    std::vector<double> numbers = same_->find(printed);
+    std::vector<double> numbers = found_by(*same_);
+    const auto is_finite = [](double number) { return std::isfinite(number); };
+    if (!numbers_ && !std::ranges::all_of(numbers, is_finite)) {
+      throw InvalidArgument(fmt::format("{}: nothing to compare: it captures {}", same_->name(),
+                                        *std::ranges::find_if_not(numbers, is_finite)));
+    }
     if (!numbers_) numbers_ = numbers;
     found = difference(*numbers_, numbers, tolerance_);
   }
@@ -97,6 +148,10 @@ std::string TrialReadings::read(TriedOrder& order, double& time) {
       throw InvalidArgument(fmt::format("--same-file: the program writes no file {}",
                                         file.lexically_relative(folder_.run()).string()));
     std::string text = FilePath(file).read();
+    if (const std::string fault = why_not_comparable(text); !text_ && !fault.empty()) {
+      throw InvalidArgument(fmt::format("--same-file {}: nothing to compare: {}",
+                                        file.lexically_relative(folder_.run()).string(), fault));
+    }
     if (!text_) text_ = text;
     found = difference(*text_, text, tolerance_);
   }
@@ -114,6 +169,7 @@ class Trial {
         folder_(subject.folder(options.with, !options.is_unprotected)),
         readings_(options, subject, folder_) {
     report_.command = options.command;
+    report_.call = options.call;
     report_.time = options.time;
     report_.budget_seconds = options.budget_seconds;
     report_.orders.push_back({.name = "original", .methods = {"original", "original"}});
@@ -130,8 +186,10 @@ class Trial {
     refuse_if_all_fail();
     for (std::vector<std::size_t> round = report_.trials.next_round(); fits(round);
          round = report_.trials.next_round()) {
-      progress_.stage(fmt::format("running in {} orders", round.size()),
-                      report_.run_seconds / options_.budget_seconds, 1);
+      const std::string known = known_so_far(report_);
+      progress_.stage(
+          fmt::format("running in {} orders{}", round.size(), known.empty() ? "" : ", so far " + known),
+          report_.run_seconds / options_.budget_seconds, 1);
       std::vector<double> times(report_.orders.size(), 1);
       for (const std::size_t order : round) times[order] = timed_run(order);
       report_.trials.add_round(times);

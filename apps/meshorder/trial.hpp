@@ -14,6 +14,7 @@ namespace meshorder::command {
 /// The program to run, and how its runs are judged; see docs/try.md.
 struct TrialOptions {
   std::vector<std::string> command;
+  std::string call;                  ///< the command line that repeats the trial
   std::vector<std::string> methods;  ///< empty: TrialSubject::orders
   std::vector<std::string> with;     ///< files beside the mesh; empty: all
   std::string time = "cpu";

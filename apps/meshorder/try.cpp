@@ -118,7 +118,7 @@ void run(const TryArguments& arguments) {
   console.warn_of(notes);
   print_trial(console, report);
   if (page) {
-    page->write(trial_page(report, arguments.input));
+    page->write(trial_page(report));
     page->commit();
     console.print("\nwrote {}", arguments.page);
   }
@@ -146,6 +146,12 @@ std::vector<std::string> passed_on(const CLI::App& subcommand) {
 std::vector<std::string>& program_to_try() {
   static std::vector<std::string> words;
   return words;
+}
+
+/// Returns the command line of this trial, without --keep, whose folder exists after the trial.
+std::string& call_of_this_trial() {
+  static std::string call;
+  return call;
 }
 
 /// Adds the options for the orders, the budget, the times and the results to compare.
@@ -217,6 +223,15 @@ void add_trial_options(CLI::App& subcommand, TryArguments& arguments) {
 void take_program_to_try(std::vector<std::string>& arguments) {
   const auto mark = std::find(arguments.begin(), arguments.end(), "--");
   if (mark == arguments.end() || std::find(arguments.begin(), mark, "try") == mark) return;
+  std::string& call = call_of_this_trial();
+  call = "meshorder";
+  for (auto word = arguments.begin(); word != arguments.end(); ++word) {
+    if (word < mark && *word == "--keep" && word + 1 < mark) {
+      ++word;
+    } else if (word >= mark || !word->starts_with("--keep=")) {
+      call += ' ' + in_shell(*word);
+    }
+  }
   program_to_try().assign(mark + 1, arguments.end());
   arguments.erase(mark, arguments.end());
 }
@@ -253,6 +268,7 @@ void add_try(CLI::App& subcommand) {
   add_common(subcommand, *arguments);
   subcommand.callback([arguments, &subcommand] {
     arguments->command = program_to_try();
+    arguments->call = call_of_this_trial();
     arguments->to_order = passed_on(subcommand);
     run(*arguments);
   });

@@ -54,20 +54,18 @@ std::string track(const TimeRatio& speedup, double longest) {
 
 }  // namespace
 
-std::string trial_page(const TrialReport& report, const std::string& input) {
+std::string trial_page(const TrialReport& report) {
   const std::string title = xml_escaped(trial_in_words(report));
   std::string page = fmt::format(fmt::runtime(kHead), fmt::arg("title", title));
   page += fmt::format("<h1>{}</h1>\n", title);
-  std::string command;
-  for (const std::string& word : report.command) command += ' ' + in_shell(word);
-  page += fmt::format("<p><code>meshorder try {} --{}</code></p>\n", xml_escaped(in_shell(input)),
-                      xml_escaped(command));
+  page += fmt::format("<p><code>{}</code></p>\n", xml_escaped(report.call));
   double longest = 1;
   const auto speedup_of = [&](std::size_t i) {
     return i == 0 ? TimeRatio{1, 1, 1} : report.trials.speedup(i);
   };
   for (std::size_t i = 1; i < report.orders.size(); ++i) {
-    if (!report.orders[i].times.empty()) longest = std::max(longest, 1 / speedup_of(i).ratio);
+    if (!report.orders[i].times.empty() && is_told_apart(speedup_of(i)))
+      longest = std::max(longest, 1 / speedup_of(i).ratio);
   }
   const std::optional<std::size_t> best = report.trials.best();
   page += "<div class=\"wide\"><table>\n";
@@ -81,6 +79,11 @@ std::string trial_page(const TrialReport& report, const std::string& input) {
       continue;
     }
     const TimeRatio speedup = speedup_of(i);
+    if (!is_told_apart(speedup)) {
+      page += fmt::format("<td class=\"soft\" colspan=\"3\">{} {}<td class=\"soft\">{} runs\n", kNotToldApart,
+                          interval_in_words(speedup), order.times.size());
+      continue;
+    }
     page += fmt::format(
         "<td class=\"bar\">{}<td class=\"number\">{}<td class=\"number\">{:.2f}×<td class=\"soft\">{} "
         "runs{}\n",

@@ -54,11 +54,16 @@ std::string nearest_in_words(const TrialReport& report, std::size_t order) {
 std::string undecided_in_words(const TrialReport& report, std::size_t best) {
   const std::string program = program_name(report.command);
   const double budget = needed_budget(report).value_or(report.budget_seconds);
-  if (interval_in_words(report.trials.speedup(best)).empty())
+  const TimeRatio speedup = report.trials.speedup(best);
+  if (interval_in_words(speedup).empty())
     return fmt::format("undecided: too few runs of {} to say; raise --budget to {:.6g} s", program, budget);
-  return fmt::format(
-      "undecided: the runs of {} vary too much to say; {}, and --budget {:.6g} halves the range", program,
-      nearest_in_words(report, best), budget);
+  if (!is_told_apart(speedup)) {
+    return fmt::format(
+        "{}: the runs of {} vary too much; {} makes it {}× as fast, and --budget {:.6g} halves this range",
+        kNotToldApart, program, report.orders[best].name, interval_in_words(speedup), budget);
+  }
+  return fmt::format("undecided: {} so far, and --budget {:.6g} halves the range",
+                     nearest_in_words(report, best), budget);
 }
 
 constexpr int kBarWidth = 24;
@@ -82,11 +87,13 @@ nlohmann::ordered_json order_json(const TrialReport& report, std::size_t number)
                                 {"peak_bytes", order.peak_bytes},
                                 {"order_seconds", order.order_seconds},
                                 {"fault", nullptr}};
-  if (!order.times.empty()) result["time"] = time_of(report, number);
   if (order.count >= 0) result["count"] = order.count;
   if (!order.fault.empty()) result["fault"] = order.fault;
   const TimeRatio speedup = number == 0 ? TimeRatio{1, 1, 1} : report.trials.speedup(number);
-  if (!order.times.empty()) result["ratio"] = speedup.ratio;
+  if (!order.times.empty() && is_told_apart(speedup)) {
+    result["time"] = time_of(report, number);
+    result["ratio"] = speedup.ratio;
+  }
   if (!order.times.empty() && !std::isinf(speedup.high)) result["interval"] = {speedup.low, speedup.high};
   return result;
 }
@@ -108,7 +115,16 @@ std::string verdict_name(const TrialReport& report) {
     case TrialVerdict::undecided:
       break;
   }
-  return "undecided";
+  const std::optional<std::size_t> best = report.trials.best();
+  const TimeRatio speedup = best ? report.trials.speedup(*best) : TimeRatio{};
+  return interval_in_words(speedup).empty() || is_told_apart(speedup) ? "undecided"
+                                                                      : std::string(kNotToldApart);
+}
+
+std::string known_so_far(const TrialReport& report) {
+  const std::optional<std::size_t> best = report.trials.best();
+  const std::string interval = best ? interval_in_words(report.trials.speedup(*best)) : "";
+  return interval.empty() ? "" : report.orders[*best].name + ' ' + interval;
 }
 
 std::string program_name(const std::vector<std::string>& command) {
@@ -193,12 +209,17 @@ void print_trial(const Console& console, const TrialReport& report) {
   const bool has_counts = report.orders.front().count >= 0;
   console.print("{:<20} {:>9} {:>7} {:>11} {:>5}{} {:>9}", "order", "time", "ratio", "95 %", "runs",
                 has_counts ? fmt::format(" {:>8}", "count") : "", "memory");
+  const auto is_known = [&](std::size_t i) {
+    return !report.orders[i].times.empty() && (i == 0 || is_told_apart(report.trials.speedup(i)));
+  };
   double longest = 0;
   for (std::size_t i = 0; i < report.orders.size(); ++i) {
-    if (!report.orders[i].times.empty()) longest = std::max(longest, time_of(report, i));
+    if (is_known(i)) longest = std::max(longest, time_of(report, i));
   }
   for (std::size_t i = 0; i < report.orders.size(); ++i) {
     const TriedOrder& order = report.orders[i];
+    if (const TimeRatio control = report.trials.control(); i == 1 && !std::isinf(control.high))
+      console.print("{:<20} {:>9} {:>7} {:>11}", "original again", "", "", interval_in_words(control));
     const std::string name = order.by_auto ? order.name + " (auto)" : order.name;
     if (!order.fault.empty()) {
       console.print("{:<20} {}", name, order.fault);
@@ -206,10 +227,12 @@ void print_trial(const Console& console, const TrialReport& report) {
       console.print("{:<20} {:>9}", name, "not timed");
     } else {
       const TimeRatio speedup = i == 0 ? TimeRatio{} : report.trials.speedup(i);
-      console.print("{:<20} {:>9} {:>7.3f} {:>11} {:>5}{} {:>9}  {}", name, time_in_words(report, i),
-                    speedup.ratio, interval_in_words(speedup), order.times.size(),
-                    has_counts ? fmt::format(" {:>8.6g}", order.count) : "", memory_cell(order.peak_bytes),
-                    bar(time_of(report, i) / longest, kBarWidth));
+      console.print("{:<20} {:>9} {:>7} {:>11} {:>5}{} {:>9}  {}", name,
+                    is_known(i) ? time_in_words(report, i) : "",
+                    is_known(i) ? fmt::format("{:.3f}", speedup.ratio) : "", interval_in_words(speedup),
+                    order.times.size(), has_counts ? fmt::format(" {:>8.6g}", order.count) : "",
+                    memory_cell(order.peak_bytes),
+                    is_known(i) ? bar(time_of(report, i) / longest, kBarWidth) : kNotToldApart);
     }
   }
 }
@@ -227,10 +250,13 @@ nlohmann::ordered_json to_json(const TrialReport& report) {
                                 {"runs_to_pay", nullptr},
                                 {"tie", kTie},
                                 {"orders", orders},
+                                {"control", nullptr},
                                 {"left_out", report.left_out},
                                 {"needed_budget", nullptr},
                                 {"run_seconds", report.run_seconds}};
   if (const std::optional<double> budget = needed_budget(report)) result["needed_budget"] = *budget;
+  const TimeRatio control = report.trials.control();
+  if (!std::isinf(control.high)) result["control"] = {control.low, control.high};
   if (!best) return result;
   result["best"] = report.orders[*best].name;
   if (is_faster(report)) result["order_command"] = report.orders[*best].made_by;

@@ -32,6 +32,7 @@ struct TriedOrder {
 /// Result of a trial.
 struct TrialReport {
   std::vector<std::string> command;
+  std::string call;  ///< the command line that repeats the trial
   std::string time;  ///< "cpu", "wall" or a regular expression
   std::vector<TriedOrder> orders;
   PairedTrials trials{0};
@@ -54,8 +55,8 @@ void print_trial(const Console& console, const TrialReport& report);
 nlohmann::ordered_json to_json(const TrialReport& report);
 
 /// Returns a page for the browser that needs no other files: the sentence, a bar with its interval for each
-/// order, and the commands. `input` is the mesh or case as the user named it.
-std::string trial_page(const TrialReport& report, const std::string& input);
+/// order, and the commands.
+std::string trial_page(const TrialReport& report);
 
 /// Returns whether times are in seconds, as opposed to a number that the program prints.
 bool is_in_seconds(const TrialReport& report);
@@ -63,11 +64,15 @@ bool is_in_seconds(const TrialReport& report);
 /// Returns whether the best order is faster than the mesh's own.
 bool is_faster(const TrialReport& report);
 
-/// Returns "faster", "slower", "tie" or "undecided".
+/// Returns "faster", "slower", "tie", "not told apart", or "undecided" if there are too few runs to say or if
+/// they decide nothing yet.
 std::string verdict_name(const TrialReport& report);
 
 /// Returns the name of a program for messages; for python, bash and other interpreters, the script's name.
 std::string program_name(const std::vector<std::string>& command);
+
+/// Returns what is known of the best order so far: "rcm 1.08–1.16"; "" if nothing is.
+std::string known_so_far(const TrialReport& report);
 
 /// Returns "1.08–1.16", or "" if too few pairs were run.
 std::string interval_in_words(const TimeRatio& speedup);

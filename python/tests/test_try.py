@@ -5,6 +5,7 @@ import itertools
 import json
 import time
 import typing
+import unittest.mock
 
 import meshorder
 import numpy as np
@@ -46,8 +47,8 @@ def test_a_gain_is_found_and_the_matrix_in_that_order_returned():
     assert mean_span(trial.ordered) < 500
     original, rcm, scrambled = trial.orders
     assert (original.name, original.ratio, original.order_seconds) == ("original", 1, 0)
-    assert rcm.runs >= 6 and rcm.order_seconds > 0
-    assert scrambled.runs == 3 and scrambled.interval is None
+    assert rcm.runs >= 4 and rcm.order_seconds > 0
+    assert scrambled.runs in (2, 3) and trial.control
     assert str(trial).startswith("1.2")
     assert "faster (" in str(trial) and "scrambled" in str(trial)
     assert json.loads(json.dumps(trial.as_dict()))["orders"][1]["name"] == "rcm"
@@ -71,10 +72,25 @@ def test_no_gain_is_called_none(gain, verdict, words):
 
 def test_the_budget_ends_what_is_not_decided():
     trial = tried(Solver(1, 0.2), ["rcm"], 0.05)
-    assert trial.verdict == "undecided"
+    assert trial.verdict == "not told apart" and trial.ratio is None and trial.orders[1].ratio is None
     assert trial.interval and trial.needed_budget == pytest.approx(0.2)
-    assert str(trial).startswith("undecided: the times vary too much to say; in rcm ")
-    assert "budget=0.2 halves the range" in str(trial)
+    assert str(trial).startswith("not told apart: the times vary too much; rcm is ")
+    assert "budget=0.2 halves this range" in str(trial) and str(trial).count("not told apart") == 2
+
+
+def test_few_long_calls_give_a_range():
+    """As many as a budget of 12 s allows of calls of 0.4 s."""
+    solver = Solver(1.3)
+
+    def long(matrix):
+        clock[0] += 0.4
+        return solver(matrix)
+
+    clock = [0.0]
+    with unittest.mock.patch.object(_try.clocks, "perf_counter", lambda: clock[0]):
+        trial = meshorder.try_orders(lattice(30, 20, 9), long, budget=12, time=lambda seconds: seconds)
+    assert trial.verdict == "faster" and trial.ratio and trial.interval and trial.interval[0] > 1.1
+    assert sum(order.runs for order in trial.orders) < 30
 
 
 class Sleeper:
@@ -119,8 +135,8 @@ def test_times_agree_with_ratios():
     )
     original, *others = trial.orders
     assert {order.runs for order in others} != {original.runs}
-    for order in others:
-        assert order.time and order.ratio
+    assert any(order.time for order in others)
+    for order in (order for order in others if order.time and order.ratio):
         assert order.time * order.ratio == pytest.approx(original.time)
 
 
@@ -135,7 +151,7 @@ def test_sums_that_are_zero_but_for_rounding_agree(graph):
 
 
 def test_an_interval_that_is_shown_as_one_decides_nothing():
-    noise = [-0.02, -0.01, 0, 0, 0.01, 0.02]
+    noise = [-0.02, 0.02, -0.01, 0.01, 0, 0]
     width = np.log(_try._speedup_of(noise).high)
     for log, verdict in ((0.0004, "undecided"), (0.002, "faster"), (-0.0004, "undecided"), (-0.002, "slower")):
         trials = _try._PairedTrials(1)
@@ -183,6 +199,12 @@ def test_results_must_agree(graph):
         meshorder.try_orders(graph, lambda a: next(numbers), ["rcm"], budget=1, tolerance=1e-9)
 
 
+@pytest.mark.parametrize("result", [None, float("nan"), [np.nan, np.inf], [], "text", {}, [[1], [1, 2]]])
+def test_results_that_are_no_numbers_do_not_agree(graph, result):
+    with pytest.raises(InvalidArgument, match="nothing to compare: the function returned "):
+        meshorder.try_orders(graph, lambda a: result, ["rcm"], budget=0.05, tolerance=1e-9)
+
+
 def test_exceptions_of_the_function_pass_through(graph):
     with pytest.raises(ZeroDivisionError):
         meshorder.try_orders(graph, lambda a: 1 / 0)
@@ -196,6 +218,9 @@ def test_exceptions_of_the_function_pass_through(graph):
         ({"methods": ["best"]}, "best"),
         ({"methods": ["rcm/lexmax"]}, "a matrix has no elements"),
         ({"time": lambda result: 0}, "cannot be compared"),
+        ({"time": lambda result: float("nan")}, "a time of nan cannot be compared"),
+        ({"time": lambda result: float("inf")}, "a time of inf cannot be compared"),
+        ({"tolerance": 1e-6}, "nothing to compare: the function returned None"),
     ],
 )
 def test_bad_arguments(graph, arguments, match):
@@ -229,3 +254,5 @@ def test_intervals_are_those_of_the_command():
         assert _try._student_quantile(tail, degrees) == pytest.approx(expected, rel=1e-5)
     found = _try._speedup_of([0.10, 0.11, 0.09, 0.10, 0.12, 0.08, 0.10, 0.11, 0.09, -3])
     assert found == pytest.approx((1.1033305, 1.0794101, 1.1277810), abs=1e-6)
+    found = _try._speedup_of([0.10, 0.11, 0.09, 0.12], [0.01, -0.02])
+    assert found == pytest.approx((1.1107106, 1.0753893, 1.1471920), abs=1e-6)

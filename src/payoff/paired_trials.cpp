@@ -12,8 +12,10 @@ namespace meshorder {
 namespace {
 
 constexpr std::size_t kFewestRounds = 3;  // rounds before the first drop: a median of 3 ignores an outlier
-constexpr std::size_t kFewestPairs = 6;   // pairs before an interval is computed
-constexpr double kTail = 0.003;           // probability on each side of the interval of a single check
+constexpr std::size_t kFewestPairs = 6;   // pairs before a mean is trimmed
+constexpr std::size_t kFirstCheck = 4;    // pairs before an interval decides
+constexpr double kPlainlySlower = 1.2;
+constexpr double kTail = 0.003;  // probability on each side of the interval of a single check
 constexpr double kTrimmed = 0.2;
 constexpr double kBetweenChecks = 1.2;
 constexpr double kLeastSpread = 0.003;
@@ -47,6 +49,20 @@ double spread(const std::vector<double>& values) {
   return kOfNormal * median(distances);
 }
 
+/// Returns the ratio for fewer than six pairs. The control has the same spread, with a mean of 0.
+TimeRatio ratio_of_few(const std::vector<double>& log_ratios, const std::vector<double>& control) {
+  const auto n = static_cast<double>(log_ratios.size());
+  const double mean = std::accumulate(log_ratios.begin(), log_ratios.end(), 0.0) / n;
+  if (log_ratios.size() < 2) return {.ratio = std::exp(mean)};
+  double squares = 0;
+  for (const double log : log_ratios) squares += (log - mean) * (log - mean);
+  for (const double log : control) squares += log * log;
+  const std::size_t degrees = log_ratios.size() - 1 + control.size();
+  const double deviation = std::max(std::sqrt(squares / static_cast<double>(degrees)), kLeastSpread);
+  const double width = student_quantile(kTail, static_cast<int>(degrees)) * deviation / std::sqrt(n);
+  return {.ratio = std::exp(mean), .low = std::exp(mean - width), .high = std::exp(mean + width)};
+}
+
 }  // namespace
 
 double student_quantile(double tail, int degrees) {
@@ -61,9 +77,14 @@ double student_quantile(double tail, int degrees) {
   return (low + high) / 2;
 }
 
-TimeRatio time_ratio_of(std::vector<double> log_ratios) {
+bool is_told_apart(const TimeRatio& speedup) {
+  const bool is_tie = speedup.low > 1 / (1 + kTie) && speedup.high < 1 + kTie;
+  return speedup.low > 1 || speedup.high < 1 || is_tie;
+}
+
+TimeRatio time_ratio_of(std::vector<double> log_ratios, const std::vector<double>& control) {
   if (log_ratios.empty()) return {};
-  if (log_ratios.size() < kFewestPairs) return {.ratio = std::exp(median(std::move(log_ratios)))};
+  if (log_ratios.size() < kFewestPairs) return ratio_of_few(log_ratios, control);
   std::sort(log_ratios.begin(), log_ratios.end());
   const auto cut = static_cast<std::ptrdiff_t>(kTrimmed * static_cast<double>(log_ratios.size()));
   const auto first = log_ratios.begin() + cut;
@@ -82,7 +103,7 @@ TimeRatio time_ratio_of(std::vector<double> log_ratios) {
 }
 
 PairedTrials::PairedTrials(std::size_t candidates)
-    : logs_(candidates + 1), left_(candidates), next_check_(kFewestPairs) {
+    : logs_(candidates + 1), left_(candidates), next_check_(kFirstCheck) {
   std::iota(left_.begin(), left_.end(), std::size_t{1});
 }
 
@@ -97,7 +118,10 @@ std::vector<std::size_t> PairedTrials::next_round() const {
 
 void PairedTrials::add_round(std::span<const double> times) {
   for (const std::size_t candidate : left_) logs_[candidate].push_back(std::log(times[0] / times[candidate]));
+  own_times_.push_back(times[0]);
   ++rounds_;
+  if (rounds_ % 2 == 0) control_.push_back(std::log(own_times_[rounds_ - 2] / own_times_[rounds_ - 1]));
+  if (rounds_ == 2) drop_plainly_slower();
   if (left_.size() > 1 && rounds_ >= kFewestRounds) drop_losers();
   if (left_.size() == 1) check();
 }
@@ -110,7 +134,17 @@ std::optional<std::size_t> PairedTrials::best() const {
                            [&](std::size_t a, std::size_t b) { return median(logs_[a]) < median(logs_[b]); });
 }
 
-TimeRatio PairedTrials::speedup(std::size_t candidate) const { return time_ratio_of(logs_[candidate]); }
+TimeRatio PairedTrials::speedup(std::size_t candidate) const {
+  return time_ratio_of(logs_[candidate], control_);
+}
+
+void PairedTrials::drop_plainly_slower() {
+  double best = -std::numeric_limits<double>::infinity();
+  for (const std::size_t candidate : left_) best = std::max(best, std::ranges::min(logs_[candidate]));
+  std::erase_if(left_, [&](std::size_t candidate) {
+    return std::ranges::max(logs_[candidate]) < best - std::log(kPlainlySlower);
+  });
+}
 
 void PairedTrials::drop_losers() {
   std::stable_sort(left_.begin(), left_.end(),
@@ -138,7 +172,7 @@ void PairedTrials::check() {
   while (next_check_ <= pairs)
     next_check_ = std::max(next_check_ + 1,
                            static_cast<std::size_t>(kBetweenChecks * static_cast<double>(next_check_)));
-  const TimeRatio found = time_ratio_of(logs_[left_.front()]);
+  const TimeRatio found = speedup(left_.front());
   if (found.low > 1 / (1 + kTie) && found.high < 1 + kTie) {
     verdict_ = TrialVerdict::tie;
   } else if (found.low >= 1 + kLeastDistance && found.ratio > 1 + kTie) {

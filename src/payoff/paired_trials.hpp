@@ -5,12 +5,16 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace meshorder {
 
 /// Orders whose times differ by less than this share are ties.
 inline constexpr double kTie = 0.015;
+
+/// The words for two orders whose times do not differ by more than the noise.
+inline constexpr std::string_view kNotToldApart = "not told apart";
 
 /// The speed of a program in an order, relative to the file's own order. The interval contains the true ratio
 /// in 95 of 100 trials, even though a trial checks the interval repeatedly.
@@ -27,21 +31,27 @@ enum class TrialVerdict { undecided, tie, faster, slower };
 /// with probability `tail`, 0 < tail < 0.5.
 double student_quantile(double tail, int degrees);
 
+/// Returns whether a ratio may be reported: its interval does not contain 1, or is so narrow that the orders
+/// are ties. Else they are "not told apart", and only the interval may be reported.
+[[nodiscard]] bool is_told_apart(const TimeRatio& speedup);
+
 /// Returns the speedup from logarithms of the ratios of paired times (own order / this order): their mean
 /// without the largest and the smallest fifth (Yuen, "The two-sample trimmed t for unequal population
-/// variances", 1974; here for one sample of differences). For fewer than six logarithms, returns their
-/// median, without an interval.
-TimeRatio time_ratio_of(std::vector<double> log_ratios);
+/// variances", 1974; here for one sample of differences). For two to five logarithms, returns their mean; the
+/// interval then uses the spread of `control`, too: logarithms of ratios of runs in one order. One logarithm
+/// has no interval.
+TimeRatio time_ratio_of(std::vector<double> log_ratios, const std::vector<double>& control = {});
 
 /// Decides by paired runs in which of several orders a program runs faster than in the file's own.
 ///
 /// The program runs in rounds, once in the file's own order and once in each order that is left; the sequence
-/// of the runs rotates. From round 3 on, each round drops the orders that are slower than the best one by
-/// more than twice the standard error. At most half of the candidates are left after round 3, a quarter after
-/// round 4, an eighth after round 6 …. When only one candidate is left, the program runs in the file's own
-/// order and in that candidate by turns. After 6, 7, 8, 9, 10, 12, 14 … pairs of runs, the interval of the
-/// ratio is checked. The trial ends if the whole interval is within a tie, or if it is at least 0.001 away
-/// from 1 and the ratio is not a tie.
+/// of the runs rotates. Round 2 drops the orders that are plainly slower: in each round, by a fifth or more
+/// than the best one in any. From round 3 on, each round drops the orders that are slower than the best one
+/// by more than twice the standard error. At most half of the candidates are left after round 3, a quarter
+/// after round 4, an eighth after round 6 …. When only one candidate is left, the program runs in the file's
+/// own order and in that candidate by turns. After 4, 5, 6, 7, 8, 9, 10, 12, 14 … pairs of runs, the interval
+/// of the ratio is checked. The trial ends if the whole interval is within a tie, or if it is at least 0.001
+/// away from 1 and the ratio is not a tie.
 ///
 /// This was tested by simulated trials, 4,000 of each kind (tests/payoff/paired_trials_test.cpp). Times were
 /// log-normal, and one in twenty was longer by up to a half.
@@ -71,14 +81,21 @@ class PairedTrials {
   /// decides.
   [[nodiscard]] TrialVerdict verdict() const { return verdict_; }
 
+  /// Returns the speedup of a candidate (≥ 1).
   [[nodiscard]] TimeRatio speedup(std::size_t candidate) const;
+  /// Returns the ratio of the file's own order to itself: of its runs in rounds 1 and 2, 3 and 4 …. What it
+  /// differs from 1 is noise.
+  [[nodiscard]] TimeRatio control() const { return time_ratio_of(control_); }
   /// Returns how many pairs the candidate has with the file's own order.
   [[nodiscard]] std::size_t pairs(std::size_t candidate) const { return logs_[candidate].size(); }
 
  private:
+  void drop_plainly_slower();
   void drop_losers();
   void check();
 
+  std::vector<double> own_times_;
+  std::vector<double> control_;            ///< logarithms of ratios of own_times_ in successive rounds
   std::vector<std::vector<double>> logs_;  ///< logarithms of time ratios, by candidate; logs_[0] is empty
   std::vector<std::size_t> left_;          ///< candidates, the best first
   std::size_t rounds_ = 0;

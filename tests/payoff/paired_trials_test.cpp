@@ -61,11 +61,37 @@ TEST(PairedTrials, QuantilesAreThoseOfTables) {
   EXPECT_NEAR(student_quantile(0.001, 7), 4.78529, 1e-4);
 }
 
-TEST(PairedTrials, FewPairsHaveNoInterval) {
-  const TimeRatio speedup = time_ratio_of(std::vector<double>(5, std::log(2.0)));
+TEST(PairedTrials, OnePairHasNoInterval) {
+  const TimeRatio speedup = time_ratio_of({std::log(2.0)});
   EXPECT_DOUBLE_EQ(speedup.ratio, 2);
   EXPECT_EQ(speedup.low, 0);
   EXPECT_TRUE(std::isinf(speedup.high));
+  EXPECT_FALSE(is_told_apart(speedup));
+}
+
+TEST(PairedTrials, FewPairsAreJudgedWithTheSpreadOfTheControl) {
+  const std::vector<double> logs{0.10, 0.11, 0.09, 0.12};
+  // as python/tests/test_try.py expects of the same rule
+  const TimeRatio speedup = time_ratio_of(logs, {0.01, -0.02});
+  EXPECT_NEAR(speedup.ratio, 1.1107106, 1e-6);
+  EXPECT_NEAR(speedup.low, 1.0753893, 1e-6);
+  EXPECT_NEAR(speedup.high, 1.1471920, 1e-6);
+  EXPECT_TRUE(is_told_apart(speedup));
+  EXPECT_FALSE(is_told_apart(time_ratio_of(logs, {0.2, -0.2})));
+}
+
+TEST(PairedTrials, OnlyNarrowIntervalsAroundOneAreTold) {
+  EXPECT_TRUE(is_told_apart({.ratio = 1, .low = 0.99, .high = 1.01}));
+  EXPECT_FALSE(is_told_apart({.ratio = 1, .low = 0.99, .high = 1.02}));
+  EXPECT_TRUE(is_told_apart({.ratio = 0.8, .low = 0.7, .high = 0.99}));
+}
+
+TEST(PairedTrials, TheControlComparesTheOwnOrderWithItself) {
+  PairedTrials trials(1);
+  for (const double own : {1.0, 1.0, 1.1, 1.0, 9.0}) trials.add_round(std::vector<double>{own, own});
+  const TimeRatio control = trials.control();
+  EXPECT_NEAR(control.ratio, std::sqrt(1.1), 1e-9);
+  EXPECT_LT(control.low, 1);
 }
 
 TEST(PairedTrials, AnOutlierHardlyMovesASpeedup) {
@@ -90,9 +116,11 @@ TEST(PairedTrials, OrdersTakeTurnsInEachRound) {
 
 TEST(PairedTrials, LosersAreDroppedEarly) {
   PairedTrials trials(3);
-  for (int round = 0; round < 3; ++round) trials.add_round(std::vector<double>{1, 0.5, 2, 1.01});
+  for (int round = 0; round < 2; ++round) trials.add_round(std::vector<double>{1, 0.9, 2, 1.01});
+  EXPECT_THAT(trials.next_round(), testing::UnorderedElementsAre(0, 1, 3));
+  trials.add_round(std::vector<double>{1, 0.9, 2, 1.01});
   EXPECT_THAT(trials.next_round(), testing::UnorderedElementsAre(0, 1));
-  EXPECT_EQ(trials.pairs(2), 3);
+  EXPECT_EQ(trials.pairs(2), 2);
   EXPECT_EQ(trials.best(), 1);
 }
 
@@ -117,7 +145,7 @@ TEST(PairedTrials, SteadyTimesAreDecidedAtOnce) {
 }
 
 TEST(PairedTrials, AnIntervalThatIsShownAsOneDecidesNothing) {
-  const std::vector<double> noise{-0.02, -0.01, 0, 0, 0.01, 0.02};
+  const std::vector<double> noise{-0.02, 0.02, -0.01, 0.01, 0, 0};
   const double width = std::log(time_ratio_of(noise).high);
   const auto verdict_of = [&](double log) {
     PairedTrials trials(1);
@@ -134,15 +162,29 @@ TEST(PairedTrials, AnIntervalThatIsShownAsOneDecidesNothing) {
 
 TEST(PairedTrials, OrdersThatAreAllTheSameAreRarelyCalledDifferent) {
   constexpr int kTrials = 400;
-  for (const double budget : {40.0, 120.0}) {
-    int wrong = 0;
-    for (int trial = 0; trial < kTrials; ++trial) {
-      Program program({1, 1, 1, 1, 1}, 0.02, static_cast<unsigned>(trial));
-      const TrialVerdict verdict = trial_of(program, 5, budget).verdict();
-      wrong += verdict == TrialVerdict::faster || verdict == TrialVerdict::slower ? 1 : 0;
+  for (const std::size_t orders : {2, 5}) {
+    for (const double budget : {12.0, 40.0, 120.0}) {
+      int wrong = 0;
+      for (int trial = 0; trial < kTrials; ++trial) {
+        Program program(std::vector<double>(orders, 1), 0.02, static_cast<unsigned>(trial));
+        const TrialVerdict verdict = trial_of(program, orders, budget).verdict();
+        wrong += verdict == TrialVerdict::faster || verdict == TrialVerdict::slower ? 1 : 0;
+      }
+      EXPECT_LE(wrong, kTrials / 20) << orders << ' ' << budget;
     }
-    EXPECT_LE(wrong, kTrials / 20) << budget;
   }
+}
+
+/// As `try --budget 50` on a program of five seconds.
+TEST(PairedTrials, TenRunsTellATenthApart) {
+  constexpr int kTrials = 400;
+  int told = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Program program({1, 0.9}, 0.01, static_cast<unsigned>(trial));
+    const PairedTrials trials = trial_of(program, 2, 10);
+    told += is_told_apart(trials.speedup(1)) ? 1 : 0;
+  }
+  EXPECT_GE(told, kTrials * 2 / 3);
 }
 
 TEST(PairedTrials, FivePercentOfASecondAreFoundInFortySeconds) {

@@ -25,12 +25,16 @@ _CLOCKS = {"cpu": clocks.process_time, "wall": clocks.perf_counter}
 _TIE = 0.015
 _FEWEST_ROUNDS = 3
 _FEWEST_PAIRS = 6
+_FIRST_CHECK = 4
+_PLAINLY_SLOWER = 1.2
 _TAIL = 0.003
 _TRIMMED = 0.2
 _BETWEEN_CHECKS = 1.2
 _LEAST_SPREAD = 0.003
 _LEAST_DISTANCE = 0.001
 _LEAST_TIME = 1e-6
+
+_NOT_TOLD_APART = "not told apart"
 
 # differences below this share of the largest number count as rounding
 _ROUNDING = 1e-12
@@ -69,12 +73,32 @@ class _Speedup(NamedTuple):
     high: float = math.inf
 
 
-def _speedup_of(logs: Sequence[float]) -> _Speedup:
-    """Returns the speedup from logarithms of paired ratios, by their trimmed mean (Yuen, 1974)."""
+def _told_apart(speedup: _Speedup) -> bool:
+    """Returns whether a ratio may be reported: its interval does not contain 1, or is that of a tie."""
+    return speedup.low > 1 or speedup.high < 1 or (speedup.low > 1 / (1 + _TIE) and speedup.high < 1 + _TIE)
+
+
+def _speedup_of_few(logs: Sequence[float], control: Sequence[float]) -> _Speedup:
+    n = len(logs)
+    mean = sum(logs) / n
+    if n < 2:
+        return _Speedup(math.exp(mean))
+    squares = sum((log - mean) ** 2 for log in logs) + sum(log * log for log in control)
+    degrees = n - 1 + len(control)
+    deviation = max(math.sqrt(squares / degrees), _LEAST_SPREAD)
+    width = _student_quantile(_TAIL, degrees) * deviation / math.sqrt(n)
+    return _Speedup(math.exp(mean), math.exp(mean - width), math.exp(mean + width))
+
+
+def _speedup_of(logs: Sequence[float], control: Sequence[float] = ()) -> _Speedup:
+    """Returns the speedup from logarithms of paired ratios, by their trimmed mean (Yuen, 1974).
+
+    For two to five pairs it is their mean, with the spread of the control: ratios of runs in one order.
+    """
     if not logs:
         return _Speedup()
     if len(logs) < _FEWEST_PAIRS:
-        return _Speedup(math.exp(statistics.median(logs)))
+        return _speedup_of_few(logs, control)
     values = np.sort(logs)
     cut = int(_TRIMMED * len(values))
     kept = len(values) - 2 * cut
@@ -97,22 +121,30 @@ class _PairedTrials:
         self.logs: list[list[float]] = [[] for _ in range(candidates + 1)]
         self.left = list(range(1, candidates + 1))
         self.verdict = "undecided"
-        self._rounds = 0
-        self._next_check = _FEWEST_PAIRS
+        self.control: list[float] = []  # logarithms of ratios of the own order in successive rounds
+        self._own: list[float] = []
+        self._next_check = _FIRST_CHECK
 
     def next_round(self) -> list[int]:
         """Returns the candidates to run next, in this order; empty when the trial has ended."""
         if not self.left or self.verdict != "undecided":
             return []
         each = [0, *self.left]
-        start = self._rounds % len(each)
+        start = len(self._own) % len(each)
         return each[start:] + each[:start]
 
     def add_round(self, times: dict[int, float]) -> None:
         for candidate in self.left:
             self.logs[candidate].append(math.log(times[0] / times[candidate]))
-        self._rounds += 1
-        if len(self.left) > 1 and self._rounds >= _FEWEST_ROUNDS:
+        self._own.append(times[0])
+        rounds = len(self._own)
+        if rounds % 2 == 0:
+            self.control.append(math.log(self._own[-2] / self._own[-1]))
+        if rounds == 2:
+            best = max((min(self.logs[candidate]) for candidate in self.left), default=0.0)
+            least = best - math.log(_PLAINLY_SLOWER)
+            self.left = [candidate for candidate in self.left if max(self.logs[candidate]) >= least]
+        if len(self.left) > 1 and rounds >= _FEWEST_ROUNDS:
             self._drop_losers()
         if len(self.left) == 1:
             self._check()
@@ -123,6 +155,9 @@ class _PairedTrials:
 
     def best(self) -> int | None:
         return max(self.left, key=self._median, default=None)
+
+    def speedup(self, candidate: int) -> _Speedup:
+        return _speedup_of(self.logs[candidate], self.control) if candidate else _Speedup(1.0, 1.0, 1.0)
 
     def _median(self, candidate: int) -> float:
         return statistics.median(self.logs[candidate] or [0.0])
@@ -135,7 +170,7 @@ class _PairedTrials:
         error = max(statistics.median(spreads) * math.sqrt(n / (n - 1)), _LEAST_SPREAD) / math.sqrt(n)
         least = statistics.median(best) - 2 * error
         self.left = [candidate for candidate in self.left if self._median(candidate) >= least]
-        self.left = self.left[: max(1, (len(self.logs) - 1) >> (self._rounds // 2))]
+        self.left = self.left[: max(1, (len(self.logs) - 1) >> (len(self._own) // 2))]
 
     def _check(self) -> None:
         pairs = len(self.logs[self.left[0]])
@@ -143,7 +178,7 @@ class _PairedTrials:
             return
         while self._next_check <= pairs:
             self._next_check = max(self._next_check + 1, int(_BETWEEN_CHECKS * self._next_check))
-        found = _speedup_of(self.logs[self.left[0]])
+        found = self.speedup(self.left[0])
         if found.low > 1 / (1 + _TIE) and found.high < 1 + _TIE:
             self.verdict = "tie"
         elif found.low >= 1 + _LEAST_DISTANCE and found.ratio > 1 + _TIE:
@@ -159,9 +194,10 @@ class TriedOrder:
     Attributes:
         name: "original", or the name of the order: "rcm", "hilbert/hilbert"; for "auto" the name of its choice.
         time: in seconds or as returned by ``time``: for the original order the median of its runs, for another order
-            this median divided by ``ratio``; None if no run counts.
-        ratio: speedup over the original order, from runs of the same rounds; None if no run counts.
-        interval: lowest and highest ratio of a 95 % interval; None for fewer than six runs.
+            this median divided by ``ratio``; None where ``ratio`` is.
+        ratio: speedup over the original order, from runs of the same rounds; None if no run counts, and if the order is
+            not told apart from the original one: the interval holds 1 and more than a tie.
+        interval: lowest and highest ratio of a 95 % interval; None for fewer than two runs.
         runs: number of runs that count.
         order_seconds: seconds to make the order.
         fault: why the order was excluded from the trial, a sentence; None if it was not.
@@ -182,42 +218,50 @@ class Trial:
 
     Attributes:
         verdict: "faster": the function runs faster in ``best``; "slower": it runs slower in the best other order
-            than in the original one; "tie": in ``best`` its time differs by at most 1.5 %; "undecided": its times vary too
-            much, or were too few, to say.
+            than in the original one; "tie": in ``best`` its time differs by at most 1.5 %; "not told apart": its times vary
+            too much to say; "undecided": there were too few runs to say, or they decide nothing yet.
         best: name of the best order besides the original one; None if there is no other.
-        ratio: speedup in that order; 1 if there is none.
-        interval: a 95 % interval of the ratio, None for fewer than six runs.
+        ratio: speedup in that order; None if it is not told apart from the original one, or if there is none.
+        interval: a 95 % interval of the ratio, None for fewer than two runs.
         orders: the orders that were tried, the original one first.
         ordered: the mesh or matrix in the best order if the verdict is "faster", else the one that was given.
         left_out: names of orders for which the budget left no time.
+        control: a 95 % interval of the original order's ratio to itself in other rounds, which shows the noise; None for
+            fewer than four runs.
         needed_budget: the budget in seconds that an undecided trial needs for an interval, or, if there is one, to halve
             its width; None for other trials, and if no other order is left to try.
     """
 
     verdict: str
     best: str | None
-    ratio: float
+    ratio: float | None
     interval: tuple[float, float] | None
     orders: list[TriedOrder]
     ordered: Any = field(repr=False, compare=False)
     left_out: list[str]
     needed_budget: float | None = None
+    control: tuple[float, float] | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """Returns everything but ``ordered``, ready for JSON."""
-        names = ("verdict", "best", "ratio", "interval", "left_out", "needed_budget")
+        names = ("verdict", "best", "ratio", "interval", "left_out", "needed_budget", "control")
         result = {name: getattr(self, name) for name in names}
         return {**result, "orders": [dict(vars(tried)) for tried in self.orders]}
 
     def __str__(self) -> str:
         rows = [f"{'order':<20} {'time':>10} {'ratio':>7} {'95 %':>13} {'runs':>5}"]
         for tried in self.orders:
-            if tried.fault or tried.time is None or tried.ratio is None:
+            if tried.fault or tried.runs == 0:
                 rows.append(f"{tried.name:<20} {tried.fault or 'not timed'}")
+                continue
+            if tried.time is None or tried.ratio is None:
+                rows.append(f"{tried.name:<20} {_NOT_TOLD_APART:>18} {_range(tried.interval):>13} {tried.runs:>5}")
                 continue
             rows.append(
                 f"{tried.name:<20} {tried.time:>10.4g} {tried.ratio:>7.3f} {_range(tried.interval):>13} {tried.runs:>5}"
             )
+        if self.control:
+            rows.insert(2, f"{'original again':<20} {'':>18} {_range(self.control):>13}")
         if self.left_out:
             rows.append(f"no time for {', '.join(self.left_out)}: give a larger budget")
         if any(tried.fault for tried in self.orders):
@@ -232,12 +276,17 @@ class Trial:
             return f"{self.ratio:.2f}× faster ({interval}) in {self.best}"
         if not interval:
             return f"undecided: too few runs to say; raise budget to {self.needed_budget:.6g}"
+        if self.ratio is None:
+            return (
+                f"{_NOT_TOLD_APART}: the times vary too much; {self.best} is {interval}× as fast, and "
+                f"budget={self.needed_budget:.6g} halves this range"
+            )
         found = f"in {self.best} {self.ratio:.3f}× as fast ({interval})"
         if self.verdict == "slower":
             return f"slower: fastest in the original order; {found}"
         if self.verdict == "tie":
             return f"tie: no order tried is faster by more than {100 * _TIE:g} %; {found}"
-        return f"undecided: the times vary too much to say; {found}, and budget={self.needed_budget:.6g} halves the range"
+        return f"undecided: {found} so far, and budget={self.needed_budget:.6g} halves the range"
 
 
 def _range(interval: tuple[float, float] | None) -> str:
@@ -281,7 +330,7 @@ class _Runner:
         self.spent += candidate.last
         if not isinstance(self._time, str):
             taken = float(self._time(result))
-            if not taken > 0:
+            if not 0 < taken < math.inf:
                 raise InvalidArgument(f"time: a time of {taken} cannot be compared")
         candidate.fault = self._difference(result)
         candidate.times.append(max(taken, _LEAST_TIME))
@@ -290,9 +339,14 @@ class _Runner:
     def _difference(self, result: Any) -> str | None:
         if self._tolerance is None:
             return None
+        try:
+            found = np.array(result, dtype=float)
+        except (TypeError, ValueError):
+            raise InvalidArgument(f"tolerance: nothing to compare: the function returned {_shown(result)}") from None
         if self._first is None:
-            self._first = np.array(result, dtype=float)
-        found = np.asarray(result, dtype=float)
+            if not np.isfinite(found).any():
+                raise InvalidArgument(f"tolerance: nothing to compare: the function returned {_shown(result)}")
+            self._first = found
         if found.shape != self._first.shape:
             return f"the results differ: shape {found.shape} instead of {self._first.shape}"
         finite = self._first[np.isfinite(self._first)]
@@ -301,6 +355,11 @@ class _Runner:
         if not wrong.any():
             return None
         return f"the results differ: {found[wrong].flat[0]:.6g} instead of {self._first[wrong].flat[0]:.6g}"
+
+
+def _shown(result: Any) -> str:
+    """Returns the beginning of an object's text, on one line."""
+    return " ".join(repr(result).split())[:60]
 
 
 def _stays(moved: Permutation) -> bool:
@@ -406,7 +465,7 @@ def try_orders(
         >>> import scipy.sparse
         >>> matrix = scipy.sparse.csr_array([[2, 0, 1], [0, 2, 1], [1, 1, 2]])
         >>> trial = meshorder.try_orders(matrix, lambda a: a @ a, ["rcm"], budget=0.1)
-        >>> trial.verdict in ("faster", "slower", "tie", "undecided")
+        >>> trial.verdict in ("faster", "slower", "tie", "not told apart", "undecided")
         True
     """
     if not budget > 0:
@@ -459,13 +518,14 @@ def _result(
     tried = []
     own = statistics.median(candidates[0].times or [0.0])
     for number, candidate in enumerate(candidates):
-        speedup = _speedup_of(trials.logs[number]) if number else _Speedup(1.0, 1.0, 1.0)
+        speedup = trials.speedup(number)
         timed = bool(candidate.times)
+        known = timed and _told_apart(speedup)
         tried.append(
             TriedOrder(
                 candidate.name,
-                own / speedup.ratio if timed else None,
-                speedup.ratio if timed else None,
+                own / speedup.ratio if known else None,
+                speedup.ratio if known else None,
                 (speedup.low, speedup.high) if timed and speedup.high < math.inf else None,
                 len(candidate.times),
                 candidate.order_seconds,
@@ -474,10 +534,14 @@ def _result(
         )
     best = trials.best()
     if best is None:
-        return Trial("undecided", None, 1.0, None, tried, candidates[0].ordered, left_out)
+        return Trial("undecided", None, None, None, tried, candidates[0].ordered, left_out)
     interval = tried[best].interval
     needed = None
     if trials.verdict == "undecided":  # the width of an interval falls with the root of the number of runs
         needed = _rounded_up(4 * budget) if interval else _needed_budget(candidates, left_out, budget, spent)
     ordered = candidates[best if trials.verdict == "faster" else 0].ordered
-    return Trial(trials.verdict, tried[best].name, tried[best].ratio or 1.0, interval, tried, ordered, left_out, needed)
+    ratio = tried[best].ratio
+    verdict = _NOT_TOLD_APART if interval and ratio is None else trials.verdict
+    control = _speedup_of(trials.control)
+    noise = (control.low, control.high) if control.high < math.inf else None
+    return Trial(verdict, tried[best].name, ratio, interval, tried, ordered, left_out, needed, noise)

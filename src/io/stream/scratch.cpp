@@ -3,6 +3,7 @@
 
 #include "io/stream/descriptor.hpp"
 #include "io/stream/output_place.hpp"
+#include <meshorder/error.hpp>
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -18,6 +19,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <memory>
