@@ -138,6 +138,12 @@ TimeRatio PairedTrials::speedup(std::size_t candidate) const {
   return time_ratio_of(logs_[candidate], control_);
 }
 
+TimeRatio PairedTrials::control() const {
+  if (control_.empty()) return {};
+  const auto [low, high] = std::ranges::minmax(control_);
+  return {.ratio = std::exp(median(control_)), .low = std::exp(low), .high = std::exp(high)};
+}
+
 void PairedTrials::drop_plainly_slower() {
   double best = -std::numeric_limits<double>::infinity();
   for (const std::size_t candidate : left_) best = std::max(best, std::ranges::min(logs_[candidate]));

@@ -226,8 +226,8 @@ class Trial:
         orders: the orders that were tried, the original one first.
         ordered: the mesh or matrix in the best order if the verdict is "faster", else the one that was given.
         left_out: names of orders for which the budget left no time.
-        control: a 95 % interval of the original order's ratio to itself in other rounds, which shows the noise; None for
-            fewer than four runs.
+        control: the smallest and the largest ratio of the original order to itself in other rounds, which show the noise;
+            None for fewer than two runs.
         needed_budget: the budget in seconds that an undecided trial needs for an interval, or, if there is one, to halve
             its width; None for other trials, and if no other order is left to try.
     """
@@ -542,6 +542,5 @@ def _result(
     ordered = candidates[best if trials.verdict == "faster" else 0].ordered
     ratio = tried[best].ratio
     verdict = _NOT_TOLD_APART if interval and ratio is None else trials.verdict
-    control = _speedup_of(trials.control)
-    noise = (control.low, control.high) if control.high < math.inf else None
+    noise = (math.exp(min(trials.control)), math.exp(max(trials.control))) if trials.control else None
     return Trial(verdict, tried[best].name, ratio, interval, tried, ordered, left_out, needed, noise)
