@@ -14,7 +14,8 @@ import scipy.sparse as sp
 from meshorder import InputError, InvalidArgument
 from meshorder._meshes import _WIDTHS
 
-MESHES = pathlib.Path(__file__).parents[3] / "shared" / "meshes"
+#: meshes of Gmsh and TetGen
+DATA = pathlib.Path(__file__).parents[2] / "tests" / "data"
 
 
 def volumes(points, cells):
@@ -108,16 +109,16 @@ def test_files_are_what_meshio_reads(mesh, tmp_path, suffix, reads):
     np.testing.assert_array_equal(ours.points, points)
 
 
-@pytest.mark.skipif(not MESHES.exists(), reason="no meshes beside the project")
-@pytest.mark.parametrize("name", ["monkey.msh", "multimaterial-cubes-v22.msh", "simpleBridge-hex.veg", "torus.node"])
+@pytest.mark.skipif(not DATA.exists(), reason="needs tests/data")
+@pytest.mark.parametrize("name", ["arch.msh", "ball.msh", "blocks.msh", "ring.node"])
 def test_files_of_others(name):
-    mesh = meshorder.read(MESHES / name)
+    mesh = meshorder.read(DATA / name)
     moved, order = meshorder.reorder(mesh)
     assert len(mesh.points) == len(moved.points) and "vertices" in repr(mesh)
     np.testing.assert_array_equal(moved.points, mesh.points[order.vertices.new_to_old])
     for data in (moved.point_data, moved.cell_data):
         assert all(len(values) in (len(moved.points), len(moved.shapes)) for values in data.values())
-    assert str(meshorder.advise(MESHES / name))
+    assert str(meshorder.advise(DATA / name))
 
 
 def test_arrays_of_a_mesh_outlive_it(mesh):

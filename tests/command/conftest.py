@@ -11,7 +11,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 MESHORDER = os.environ.get("MESHORDER", str(ROOT / "build" / "bin" / "meshorder"))
 # the same predictions on every machine, and no measurement before them
 os.environ["MESHORDER_MACHINE"] = "zen3"
-SHARED = ROOT.parent / "shared" / "meshes"
+#: meshes of Gmsh and TetGen
+DATA = ROOT / "tests" / "data"
 
 
 class Command:
@@ -58,13 +59,3 @@ def model(tmp_path_factory):
     return make
 
 
-@pytest.fixture
-def shared():
-    """The path of a real mesh; the test is skipped where there are none."""
-
-    def find(name):
-        if not (SHARED / name).exists():
-            pytest.skip(f"needs {SHARED / name}")
-        return SHARED / name
-
-    return find

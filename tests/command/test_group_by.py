@@ -5,6 +5,7 @@ import numpy
 import pytest
 
 import meshes
+from conftest import DATA
 
 
 def runs(values):
@@ -116,8 +117,8 @@ def test_regions_that_tetgen_writes_as_reals(command, tmp_path):
     assert [(g["value"], g["vertices"]) for g in groups] == [(1, 4), (2, 1)]
 
 
-def test_materials_of_a_real_mesh(command, shared, tmp_path):
-    source = shared("multimaterial-cubes-v22.msh")
+def test_materials_of_a_real_mesh(command, tmp_path):
+    source = DATA / "blocks.msh"
     result = command.json("order", source, "-o", "ordered.msh", "--group-by", "label", "--maps", "m")
     mesh = meshio.read(tmp_path / "ordered.msh")
     tags = numpy.concatenate(mesh.cell_data["gmsh:physical"])

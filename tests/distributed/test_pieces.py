@@ -8,7 +8,7 @@ import subprocess
 import numpy
 import pytest
 import vtkmodules.util.numpy_support as convert
-from test_mpi import SHARED, ball, launch, order, own_lines, serial
+from test_mpi import DATA, ball, launch, order, own_lines, serial
 from test_vtu_slices import array, grid, write
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkHigherOrderHexahedron, vtkUnstructuredGrid
@@ -233,12 +233,10 @@ def test_fields_beyond_the_end_are_reported(tmp_path, offset):
     assert os.listdir(tmp_path) == ["a.vtu"]
 
 
-@pytest.mark.parametrize("name, extension", [("monkey.msh", ".mesh"), ("simpleBridge-hex.veg", ".vtu")])
+@pytest.mark.parametrize("name, extension", [("blocks.msh", ".mesh"), ("arch.msh", ".vtu")])
 def test_pieces_of_other_formats_have_the_numbers_of_the_output(tmp_path, name, extension):
-    if not (SHARED / name).exists():
-        pytest.skip(f"needs {SHARED / name}")
     out = tmp_path / f"b{extension}"
-    done = order(2, SHARED / name, "-o", out, "--pieces", tmp_path / "out", "--parts", "5", "--json")
+    done = order(2, DATA / name, "-o", out, "--pieces", tmp_path / "out", "--parts", "5", "--json")
     subprocess.run([os.environ["MESHORDER"], "order", out, "-o", tmp_path / "same.vtu", "--vertices", "original", "--elements",
                     "original"], check=True, capture_output=True)
     # the pieces also have what Medit's files cannot hold

@@ -16,7 +16,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <numeric>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -32,6 +34,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+using testing::Pair;
+using testing::StartsWith;
 using testing::UnorderedElementsAre;
 
 // two hexahedra, a wedge on them and shells, with all kinds of references
@@ -586,6 +590,27 @@ TEST(Abaqus, WritesAllTypesThatItHolds) {
     EXPECT_EQ(deck_of(again), deck_of(mesh)) << type_name(shape, count);
   }
   EXPECT_EQ(held, 14);
+}
+
+TEST(Abaqus, WritesAtMostSixteenNumbersOnALine) {
+  Mesh mesh = test::cells_of_type(Shape::hexahedron, 20, 1);
+  std::vector<Index> all(20);
+  std::iota(all.begin(), all.end(), 0);
+  mesh.sets = {{"seventeen", Association::vertices, {all.begin(), all.begin() + 17}},
+               {"sixteen", Association::vertices, {all.begin(), all.begin() + 16}}};
+  std::istringstream text(write_mesh_to_memory(mesh, "abaqus", "m.inp").files.front().bytes);
+  std::map<std::string, std::vector<std::ptrdiff_t>> numbers;  // of each line, by the keyword before it
+  std::string keyword;
+  for (std::string line; std::getline(text, line);) {
+    if (line.starts_with('*')) {
+      keyword = line;
+    } else {
+      numbers[keyword].push_back(std::count(line.begin(), line.end(), ',') + (line.ends_with(',') ? 0 : 1));
+    }
+  }
+  EXPECT_THAT(numbers, Contains(Pair(StartsWith("*ELEMENT"), ElementsAre(16, 5))));
+  EXPECT_THAT(numbers, Contains(Pair(HasSubstr("=seventeen"), ElementsAre(16, 1))));
+  EXPECT_THAT(numbers, Contains(Pair(HasSubstr("=sixteen"), ElementsAre(16))));
 }
 
 TEST(Abaqus, PutsTheMiddleOfALineBetweenItsEnds) {

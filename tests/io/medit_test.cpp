@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace meshorder {
 namespace {
@@ -252,6 +253,22 @@ TEST(Medit, KeepsAMemberThatAListNamesTwiceOnce) {
       &notes);
   EXPECT_THAT(mesh.sets.at(0).members, ElementsAre(2, 0));
   EXPECT_THAT(notes, ElementsAre("the set 'Corners' names 2 members twice, which are kept once"));
+}
+
+TEST(Medit, WritesTheVersionThatHoldsItsReferences) {
+  const auto version_of = [](Values labels, Association on) {
+    Mesh mesh = test::cells_of_type(Shape::line, 2, 1);
+    mesh.data = {{std::string(kLabel), on, 1, std::move(labels), {}, {}}};
+    const std::string text = write_mesh_to_memory(mesh, "medit", "m.mesh").files.front().bytes;
+    return text.substr(0, text.find('\n'));
+  };
+  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+  using Longs = std::vector<std::int64_t>;
+  EXPECT_EQ(version_of(Longs{kMost}, Association::cells), "MeshVersionFormatted 2");
+  EXPECT_EQ(version_of(Longs{kMost + 1}, Association::cells), "MeshVersionFormatted 4");
+  EXPECT_EQ(version_of(Longs{-kMost - 2}, Association::cells), "MeshVersionFormatted 4");
+  EXPECT_EQ(version_of(Longs{1, kMost}, Association::vertices), "MeshVersionFormatted 2");
+  EXPECT_EQ(version_of(Longs{1, kMost + 1}, Association::vertices), "MeshVersionFormatted 4");
 }
 
 TEST(Medit, AcceptsAFileWithoutEndAndSaysSo) {

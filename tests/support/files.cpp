@@ -54,10 +54,7 @@ std::string with(std::string text, std::string_view old, std::string_view fresh)
   return text.replace(at, old.size(), fresh);
 }
 
-fs::path shared_mesh(const std::string& name) {
-  const fs::path path = fs::path(MESHORDER_SHARED_MESHES) / name;
-  return fs::exists(path) ? path : fs::path();
-}
+fs::path data_mesh(const std::string& name) { return fs::path(MESHORDER_TEST_DATA) / name; }
 
 std::string read_error(const fs::path& path) {
   try {

@@ -35,8 +35,8 @@ std::string content_of(const std::filesystem::path& path);
 /// The text with the first `old` replaced by `fresh`; EXPECTs that the text contains `old`.
 std::string with(std::string text, std::string_view old, std::string_view fresh);
 
-/// The path of a file in the shared folder of real meshes; empty where that is absent (then GTEST_SKIP).
-std::filesystem::path shared_mesh(const std::string& name);
+/// The path of a mesh in tests/data, which Gmsh or TetGen made.
+std::filesystem::path data_mesh(const std::string& name);
 
 /// The message of the Error that reading `path` throws; "" (and a failed EXPECT) when it throws none.
 std::string read_error(const std::filesystem::path& path);
