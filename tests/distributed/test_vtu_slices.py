@@ -166,6 +166,18 @@ def test_blocks_of_any_size_are_read(tmp_path, compressor, block):
     assert_same(read(tmp_path / "b.vtu"), read(tmp_path / "c.vtu"))
 
 
+def test_numbers_in_attributes_may_have_blanks(tmp_path):
+    write(tmp_path / "a.vtu", grid())
+    head, begin, rest = (tmp_path / "a.vtu").read_bytes().partition(b"<AppendedData")
+    head, count = re.subn(rb' (version|NumberOf\w+|offset)="([\d.]+)"', rb' \1=" \n\t\2\t"', head)
+    assert count > 10
+    (tmp_path / "b.vtu").write_bytes(head + begin + rest)
+    for name in ("a", "b"):
+        done = order(2, tmp_path / f"{name}.vtu", "-o", tmp_path / f"{name}-out.vtu", "--json")
+        assert json.loads(done.stdout)["files_by"] == "all ranks"
+    assert_same(read(tmp_path / "a-out.vtu"), read(tmp_path / "b-out.vtu"))
+
+
 def test_compressed_files_are_the_same_on_every_number_of_ranks(tmp_path):
     """Many blocks for each rank, and for each of its neighbours."""
     ball = json.loads(serial("models", "make", "ball", "--size", "30", "--json").stdout)["models"][0]["path"]

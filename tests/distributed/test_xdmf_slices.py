@@ -133,6 +133,17 @@ def test_the_maps_are_those_that_rank_0_writes(tmp_path):
     assert maps[0] == maps[1] and len(maps[0]) > 3
 
 
+def test_numbers_in_attributes_may_have_blanks(tmp_path):
+    before = read(write(tmp_path / "a.xdmf"))
+    text, count = re.subn(r' (NumberOfElements|NodesPerElement|Dimensions)="([\d ]+)"', r' \1=" \n\2\t"',
+                          (tmp_path / "a.xdmf").read_text())
+    assert count > 5
+    (tmp_path / "a.xdmf").write_text(text)
+    done = order(2, tmp_path / "a.xdmf", "-o", tmp_path / "b.xdmf", "--json")
+    assert by(done) == "all ranks"
+    assert_same_but_for_order(before, read(tmp_path / "b.xdmf"))
+
+
 def test_a_file_may_take_its_own_place(tmp_path):
     before = read(write(tmp_path / "a.xdmf", seed=4))
     order(3, tmp_path / "a.xdmf", "-o", tmp_path / "a.xdmf")

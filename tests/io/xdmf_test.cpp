@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <span>
@@ -333,6 +334,48 @@ TEST(Xdmf, FaultsNameTheLine) {
 /// kMixed with declarations in its DOCTYPE, and one change.
 std::string declared(const std::string& declarations, std::string_view what = "", std::string_view by = "") {
   return with(with(std::string(kMixed), "[]", "[" + declarations + "]"), what, by);
+}
+
+TEST(Xdmf, NumbersInAttributesMayHaveBlanksAndASign) {
+  const std::string binary = R"(<Xdmf Version="3.0"><Domain><Grid>
+   <Topology TopologyType="Polyline" NumberOfElements="2" NodesPerElement="3">
+    <DataItem Dimensions="2 3" NumberType="Int" Precision="4" Format="XML">0 1 2 2 3 4</DataItem></Topology>
+   <Geometry GeometryType="XYZ">
+    <DataItem Dimensions="5 3" Precision="8" Format="Binary" Endian="Little" Seek="8">points.bin</DataItem>
+   </Geometry></Grid></Domain></Xdmf>)";
+  const TemporaryFolder folder;
+  std::string bytes(8, 'x');
+  for (int k = 0; k < 15; ++k) {
+    const auto number = std::bit_cast<std::array<char, 8>>(k / 2.0);
+    bytes.append(number.data(), number.size());
+  }
+  (void)folder.file("points.bin", bytes);
+  for (const std::string& text : {std::string(kMixed), binary}) {
+    const Mesh mesh = read_mesh(folder.file("a.xdmf", text));
+    for (const std::string attribute :
+         {"NumberOfElements", "BaseOffset", "NodesPerElement", "Dimensions", "Precision", "Seek"}) {
+      const std::string begin = attribute + "=\"";
+      std::string changed = text;
+      for (std::size_t at = changed.find(begin); at != std::string::npos; at = changed.find(begin, at + 1)) {
+        changed.insert(at + begin.size(), " \n\t+");
+        changed.insert(changed.find('"', at + begin.size()), " \r\n");
+      }
+      const Mesh found = read_mesh(folder.file("b.xdmf", changed));
+      EXPECT_EQ(found.points, mesh.points) << attribute;
+      EXPECT_EQ(found.cells, mesh.cells) << attribute;
+      EXPECT_EQ(found.data, mesh.data) << attribute;
+    }
+  }
+  for (const std::string attribute : {"NodesPerElement=\"3", "Precision=\"8", "Seek=\"8"}) {
+    const std::string fault =
+        attribute.substr(0, attribute.find('=')) + " is '8 3'; a whole number is needed";
+    const std::string changed = with(binary, attribute, attribute.substr(0, attribute.size() - 1) + "8 3");
+    EXPECT_THAT(test::read_error(folder.file("c.xdmf", changed)), HasSubstr(fault));
+  }
+  EXPECT_THAT(fault_of(with(std::string(kMixed), "BaseOffset=\"1\"", "BaseOffset=\"one\"")),
+              HasSubstr("m.xdmf:8: BaseOffset is 'one'"));
+  EXPECT_THAT(fault_of(with(std::string(kMixed), "Elements=\"4\"", "Elements=\"4x\"")),
+              HasSubstr("m.xdmf:8: NumberOfElements is '4x'"));
 }
 
 TEST(Xdmf, EntitiesOfTheDoctypeStandForTheirText) {

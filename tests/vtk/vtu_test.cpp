@@ -298,8 +298,11 @@ TEST(Vtu, BrokenFilesGiveOneClearError) {
        {"raw data that end", raw_head + std::string("\x18\0\0\0\0\0\0\0", 8), ":3: the array has 24 bytes"},
        {"raw data of an absurd size",
         raw_head + std::string("\x18\0\0\0\0\0\xff\xff", 8) + std::string(100, 'x'), ":3: the array has"},
-       {"an offset beyond the end", with(raw_head, "offset=\"0\"", "offset=\"77\""), ":3: the offset"},
-       {"a negative offset", with(raw_head, "offset=\"0\"", "offset=\"-1\""), ":3: the offset"},
+       {"an offset beyond the end", with(raw_head, "offset=\"0\"", "offset=\"77\""),
+        ":3: the offset 77 lies beyond the file"},
+       {"a negative offset", with(raw_head, "offset=\"0\"", "offset=\"-1\""),
+        ":3: offset is '-1'; a whole number"},
+       {"no offset", with(raw_head, "offset=\"0\"", "offset=\" \""), ":3: offset is ' '"},
        {"unknown coding of what is appended", with(raw_head, "\"raw\"", "\"uu\""), ":7: the encoding"},
        {"nothing appended", with(raw_head, ">_", ">"), ":7: <AppendedData> does not begin"}});
 }
@@ -333,6 +336,37 @@ TEST(Vtu, AnEmptyNumberOfComponentsIsOne) {
   expect_same(
       read_mesh(folder.file("a.vtu", with(text, "Name=\"heat\"", "Name=\"heat\" NumberOfComponents=\"\""))),
       read_mesh(folder.file("b.vtu", text)));
+}
+
+TEST(Vtu, NumbersInAttributesMayHaveBlanksAndASign) {
+  const TemporaryFolder folder;
+  const std::string text =
+      with(with(kSmallVtu, "NaN -inf", "3 4"), "Name=\"heat\"", "Name=\"heat\" TimeStep=\"0\"");
+  Mesh mesh = read_mesh(folder.file("a.vtu", text));
+  write_mesh(mesh, folder.path() / "appended.vtu");  // its arrays have offsets
+  const std::string appended = content_of(folder.path() / "appended.vtu");
+  const std::vector<std::pair<std::string, std::string>> attributes{
+      {"NumberOfPoints", text}, {"NumberOfCells", text}, {"NumberOfComponents", text},
+      {"NumberOfTuples", text}, {"version", text},       {"TimeStep", text},
+      {"IdType", text},         {"offset", appended}};
+  for (const auto& [attribute, whole] : attributes) {
+    for (const std::string_view before : {"    ", "\n\t", "\r\n+"}) {
+      if (before.ends_with('+') &&
+          (attribute == "version" || attribute == "IdType" || attribute == "TimeStep"))
+        continue;
+      std::string changed = whole;
+      const std::string begin = " " + attribute + "=\"";
+      for (std::size_t at = changed.find(begin); at != std::string::npos; at = changed.find(begin, at + 1)) {
+        changed.insert(at + begin.size(), before);
+        changed.insert(changed.find('"', at + begin.size()), " \t");
+      }
+      ASSERT_NE(changed, whole) << attribute;
+      const Mesh found = read_mesh(folder.file("b.vtu", changed));
+      expect_same(found, mesh);
+      write_mesh(found, folder.path() / "c.vtu");
+      EXPECT_EQ(content_of(folder.path() / "c.vtu"), appended) << attribute;
+    }
+  }
 }
 
 TEST(Vtu, AFileOfOneTimeStepIsRead) {

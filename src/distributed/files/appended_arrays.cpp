@@ -42,7 +42,7 @@ std::vector<Offset> VtuXml::offsets() const {
 }
 
 Offset VtuXml::most_bytes() const {
-  std::size_t bytes = text_.find_last_not_of(vtk::kXmlBlanks, text_.size() - 2) + 2;
+  std::size_t bytes = text_.find_last_not_of(kXmlBlanks, text_.size() - 2) + 2;
   for (const Place& place : places_) bytes += kMostDigits - std::min(place.size, kMostDigits);
   return static_cast<Offset>(std::max(bytes, text_.size()));
 }

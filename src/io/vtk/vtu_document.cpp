@@ -113,8 +113,7 @@ const std::string& VtuDocument::required(const VtuElement& element, std::string_
 std::int64_t VtuDocument::count(const VtuElement& element, std::string_view name, std::int64_t most) const {
   const std::string& text = required(element, name);
   std::int64_t value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc{} || end != text.data() + text.size() || value < 0 || value > most) {
+  if (!parse_xml_number(text, value) || value < 0 || value > most) {
     throw error(element, fmt::format("{} is '{}'", name, text.substr(0, 40)),
                 most == kMaxIndex ? "a whole number from 0 to 2147483647 is needed"
                                   : "a whole number from 0 on is needed");
@@ -262,10 +261,11 @@ void VtuDocument::read_root() {
                 "a .vtu file holds an UnstructuredGrid");
   }
   if (const std::string* version = root_.attribute("version")) {
+    const std::string_view text = without_xml_blanks(*version);
     int major = 0;
     int minor = 0;
-    const char* const end = version->data() + version->size();
-    const auto dot = std::from_chars(version->data(), end, major).ptr;
+    const char* const end = text.data() + text.size();
+    const auto dot = std::from_chars(text.data(), end, major).ptr;
     if (dot != end && *dot == '.') std::from_chars(dot + 1, end, minor);
     if (major < 0 || major > 9 || minor < 0 || minor > 9)
       throw error(root_, "the version is '" + version->substr(0, 40) + "'", "0.1 to 2.3 are supported");

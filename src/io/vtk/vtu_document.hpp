@@ -3,6 +3,7 @@
 
 #include "io/stream/scanner.hpp"
 #include "io/vtk/vtk.hpp"
+#include "io/xml.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -13,8 +14,6 @@
 #include <vector>
 
 namespace meshorder::vtk {
-
-inline constexpr std::string_view kXmlBlanks = " \t\r\n";
 
 /// Returns the text of an XML entity, such as "lt" or "#65"; empty if there is no such entity.
 std::string entity(std::string_view name);

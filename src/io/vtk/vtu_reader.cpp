@@ -393,7 +393,7 @@ class VtuReader {
   void refuse_time_steps(const VtuElement& array) const {
     const std::string* const step = array.attribute("TimeStep");
     if (step == nullptr) return;
-    if (*step != "0")
+    if (without_xml_blanks(*step) != "0")
       throw file_->error(array, "the file holds several time steps", "save each step as a separate file");
     const char* const note = "the time of the only step is left out";
     if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.emplace_back(note);
@@ -428,7 +428,8 @@ class VtuReader {
   void read_facts(const VtuElement& element, std::optional<Association> association, const DataArray& array) {
     ArrayFacts facts{association, array.name, {}, {}, {}};
     const std::string* id = element.attribute("IdType");
-    if (id != nullptr && *id == "1" && std::holds_alternative<std::vector<std::int64_t>>(array.values))
+    if (id != nullptr && without_xml_blanks(*id) == "1" &&
+        std::holds_alternative<std::vector<std::int64_t>>(array.values))
       facts.type = "vtkIdType";
     for (const VtuElement& key : element.children) {
       const std::string* name = key.attribute("name");

@@ -25,8 +25,6 @@ namespace {
 
 using Format = DataPlace::Format;
 
-constexpr std::string_view kBlanksOfXml = " \t\r\n";
-
 /// A number type under a name that VTK's readers accept: they know one byte as Char or UChar, not as Int.
 struct NumberType {
   std::string_view name;
@@ -40,12 +38,6 @@ constexpr std::array kNumberTypes{
     NumberType{"UInt", 8, 9},  NumberType{"Int", 1, 2},   NumberType{"UInt", 1, 3},
     NumberType{"Int", 2, 4},   NumberType{"UInt", 2, 5},
 };
-
-std::string_view trimmed_blanks(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanksOfXml);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanksOfXml) - first + 1);
-}
 
 /// All text of an element. Only text in several pieces is copied.
 class ElementText {
@@ -73,11 +65,10 @@ std::vector<std::uint64_t> shape_of(const Document& document, pugi::xml_node ite
   std::vector<std::uint64_t> shape;
   const std::string dimensions = attribute(item, "Dimensions");
   std::string_view rest = dimensions;
-  for (std::string_view word = next_word(rest, kBlanksOfXml); !word.empty();
-       word = next_word(rest, kBlanksOfXml)) {
+  for (std::string_view word = next_word(rest, kXmlBlanks); !word.empty();
+       word = next_word(rest, kXmlBlanks)) {
     std::uint64_t size = 0;
-    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), size);
-    if (code != std::errc{} || end != word.data() + word.size()) {
+    if (!parse_xml_number(word, size)) {
       throw document.error(item, fmt::format("Dimensions is '{}'", dimensions.substr(0, 40)),
                            "whole numbers, such as 100 3, are needed");
     }
@@ -92,14 +83,16 @@ std::vector<std::uint64_t> shape_of(const Document& document, pugi::xml_node ite
 /// Returns the number type of values in XML or in a binary file, as an alternative of Values.
 std::size_t alternative_of(const Document& document, pugi::xml_node item) {
   const std::string type = attribute(item, "NumberType", "DataType");
-  const std::string precision = attribute(item, "Precision");
+  const auto precision = document.whole_number<int>(item, "Precision", 0);
   const auto found = std::find_if(kNumberTypes.begin(), kNumberTypes.end(), [&](const NumberType& known) {
     if (!same_but_for_case(known.name, type.empty() ? "Float" : type)) return false;
     const bool usual = known.precision == 4 || known.name.ends_with("Char") || known.name.ends_with("Short");
-    return precision.empty() ? usual : std::to_string(known.precision) == precision;
+    return precision == 0 ? usual : known.precision == precision;
   });
   if (found == kNumberTypes.end()) {
-    throw document.error(item, fmt::format("the numbers are '{}' of {} bytes", type, precision),
+    throw document.error(item,
+                         fmt::format("the numbers are '{}'{}", type,
+                                     precision == 0 ? "" : fmt::format(" of {} bytes", precision)),
                          "Float, Int, UInt, Char and UChar are supported");
   }
   return found->alternative;
@@ -107,7 +100,7 @@ std::size_t alternative_of(const Document& document, pugi::xml_node item) {
 
 /// Stores in `place` where the values of a DataItem are in a binary file.
 void find_bytes(const Document& document, pugi::xml_node item, DataPlace& place) {
-  place.file = trimmed_blanks(ElementText(item).view());
+  place.file = without_xml_blanks(ElementText(item).view());
   const std::string order = attribute(item, "Endian");
   if (same_but_for_case(order, "Big")) place.order = std::endian::big;
   if (same_but_for_case(order, "Little")) place.order = std::endian::little;
@@ -116,7 +109,7 @@ void find_bytes(const Document& document, pugi::xml_node item, DataPlace& place)
     throw document.error(item, fmt::format("the binary file is compressed ({})", compression.substr(0, 40)),
                          "write it without Compression");
   }
-  place.seek = item.attribute("Seek").as_ullong(0);
+  place.seek = document.whole_number<std::uint64_t>(item, "Seek", 0);
 }
 
 /// Throws InputError if the XML gives a checksum and the values of a plain binary file have another checksum.
@@ -160,12 +153,12 @@ std::string key_of(const DataPlace& place) {
 }
 
 std::pair<std::string, std::string> split_hdf5_name(std::string_view text) {
-  text = trimmed_blanks(text);
+  text = without_xml_blanks(text);
   std::size_t colon = text.find(":/");
   if (colon == std::string_view::npos) colon = text.rfind(':');
   if (colon == std::string_view::npos) return {};
-  return {std::string(trimmed_blanks(text.substr(0, colon))),
-          hdf5::normal_path(trimmed_blanks(text.substr(colon + 1)))};
+  return {std::string(without_xml_blanks(text.substr(0, colon))),
+          hdf5::normal_path(without_xml_blanks(text.substr(colon + 1)))};
 }
 
 DataPlace DataReader::place_of(pugi::xml_node item) {
@@ -288,8 +281,8 @@ Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const 
     const RegularNumbers regular = read_regular_numbers<Number>(text, numbers);
     numbers.resize(regular.count);
     text.remove_prefix(regular.bytes);
-    for (std::string_view word = next_word(text, kBlanksOfXml); !word.empty();
-         word = next_word(text, kBlanksOfXml)) {
+    for (std::string_view word = next_word(text, kXmlBlanks); !word.empty();
+         word = next_word(text, kXmlBlanks)) {
       Number number{};
       const char* const end = word.data() + word.size();
       const auto [next, code] = std::from_chars(word.data() + (word.front() == '+' ? 1 : 0), end, number);

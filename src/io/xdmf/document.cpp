@@ -31,13 +31,6 @@ bool is_include(pugi::xml_node element) {
   return name == "include" || name.ends_with(":include");
 }
 
-/// Returns a path without the blanks at its ends.
-std::string trimmed_path(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
-
 /// Returns an XPath without its quoted texts.
 std::string without_texts(std::string_view path) {
   std::string result;
@@ -163,7 +156,7 @@ InputError Document::error(pugi::xml_node at, const std::string& what, const std
 }
 
 const std::vector<pugi::xml_node>& Document::selected(pugi::xml_node from, std::string path) const {
-  path = trimmed_path(path);
+  path = std::string(without_xml_blanks(path));
   if (path.starts_with("xpointer(") && path.ends_with(")")) path = path.substr(9, path.size() - 10);
   std::vector<pugi::xml_node>& found = selected_[path];
   if (!found.empty()) return found;

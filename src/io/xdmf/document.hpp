@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/stream/file_path.hpp"
+#include "io/xml.hpp"
 #include <meshorder/error.hpp>
 
 #include <pugixml.hpp>
@@ -38,6 +39,19 @@ class Document {
 
   /// Returns an InputError at the line of an element.
   [[nodiscard]] InputError error(pugi::xml_node at, const std::string& what, const std::string& remedy) const;
+
+  /// Returns the whole number in an attribute, `otherwise` if the attribute is missing or empty. Throws
+  /// InputError for other text.
+  template <class Number>
+  [[nodiscard]] Number whole_number(pugi::xml_node element, const char* name, Number otherwise) const {
+    const std::string_view text = element.attribute(name).value();
+    Number number = otherwise;
+    if (!text.empty() && !parse_xml_number(text, number)) {
+      throw error(element, std::string(name) + " is '" + std::string(text.substr(0, 40)) + "'",
+                  "a whole number is needed");
+    }
+    return number;
+  }
 
   /// Returns the mark that the file shares with its HDF5 files, empty if it has no mark; see `kMark`.
   [[nodiscard]] std::string_view mark() const { return root().find_child(is_mark).value(); }

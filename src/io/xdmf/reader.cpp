@@ -186,7 +186,8 @@ class XdmfReader {
   bool find_cells(pugi::xml_node topology) {
     const TopologyType* const type = topology_type(attribute(topology, "TopologyType", "Type"));
     if (type == nullptr || type->nodes == 0 || vtk::may_be_reordered(static_cast<std::uint8_t>(type->vtk)) ||
-        !topology.attribute("Order").empty() || topology.attribute("BaseOffset").as_int(0) != 0 ||
+        !topology.attribute("Order").empty() ||
+        reading_.document.whole_number<int>(topology, "BaseOffset", 0) != 0 ||
         items_of(topology).size() != 1) {
       return false;
     }
@@ -198,7 +199,8 @@ class XdmfReader {
     const std::string announced = attribute(topology, "NumberOfElements", "Dimensions");
     std::string_view rest = announced;
     const std::string_view cells = next_word(rest);
-    return cells.empty() || cells == std::to_string(raw_.cells);
+    std::int64_t count = 0;
+    return cells.empty() || (parse_xml_number(cells, count) && count == raw_.cells);
   }
 
   bool find_array(pugi::xml_node element) {

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <iterator>
 #include <span>
 #include <unordered_map>
@@ -82,8 +81,7 @@ std::int64_t claimed_cells(const Document& document, pugi::xml_node topology) {
   std::int64_t cells = -1;
   for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
     std::int64_t size = -1;
-    std::from_chars(word.data(), word.data() + word.size(), size);
-    if (size < 0 || size > kMaxIndex) {
+    if (!parse_xml_number(word, size) || size < 0 || size > kMaxIndex) {
       throw document.error(topology, fmt::format("NumberOfElements is '{}'", shortened(text)),
                            "a whole number up to 2147483647 is needed");
     }
@@ -156,7 +154,7 @@ FileCells cells_of(Reading& reading, pugi::xml_node topology, pugi::xml_node ite
   const TopologyType& known = *topology_type(type);
   std::int64_t nodes = known.nodes;
   if (nodes == 0) {
-    nodes = topology.attribute("NodesPerElement").as_llong(0);
+    nodes = reading.document.whole_number<std::int64_t>(topology, "NodesPerElement", 0);
     if (nodes <= 0 && place.shape.size() > 1) nodes = static_cast<std::int64_t>(place.shape.back());
     if (nodes <= 0 && claimed > 0) nodes = std::ssize(numbers) / claimed;
     if (nodes <= 0 && known.number == kPolyvertex) nodes = 1;
@@ -263,7 +261,7 @@ int TopologyReader::read(const GridElement& grid, pugi::xml_node topology) {
   }
   const pugi::xml_node item = item_of_topology(reading_, topology);
   Field field{Field::Role::connectivity, reading_.data.place_of(item)};
-  field.base = topology.attribute("BaseOffset").as_int(0);
+  field.base = reading_.document.whole_number<int>(topology, "BaseOffset", 0);
   const std::string key = key_of_cells(topology, field.place, field.base);
   std::vector<Field>& fields = reading_.layout->fields;
   if (const auto known = known_topologies_.find(key); known != known_topologies_.end()) {
