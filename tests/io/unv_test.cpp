@@ -6,6 +6,7 @@
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -164,16 +165,19 @@ TEST(Unv, WholeNumbersLeaveABlankInTenColumns) {
   EXPECT_FALSE(unv::fits_columns(-100'000'000));
 }
 
+/// kFile as it is written: members of a group are written nodes first.
+std::string as_written() {
+  return with(std::string(kFile),
+              "         7        50         0         0         8         2         0         0\n"
+              "         7        10         0         0         8         9         0         0\n"
+              "         3         4         0         0\n",
+              "         7        50         0         0         7        10         0         0\n"
+              "         8         2         0         0         3         4         0         0\n"
+              "         8         9         0         0\n");
+}
+
 TEST(Unv, WritesWhatItRead) {
-  // members of a group are written nodes first
-  const std::string expected =
-      with(std::string(kFile),
-           "         7        50         0         0         8         2         0         0\n"
-           "         7        10         0         0         8         9         0         0\n"
-           "         3         4         0         0\n",
-           "         7        50         0         0         7        10         0         0\n"
-           "         8         2         0         0         3         4         0         0\n"
-           "         8         9         0         0\n");
+  const std::string expected = as_written();
   EXPECT_EQ(written(read_text(kFile)), expected);
   std::string crlf = expected;
   for (std::size_t at = 0; (at = crlf.find('\n', at)) != std::string::npos; at += 2) crlf.insert(at, 1, '\r');
@@ -277,6 +281,70 @@ TEST(Unv, WholeNumbersThatFillTheirColumnsAreReal) {
   text = with(text, "  1.00000E-01  1.23456E-07  0.00000E+00\n", "         3 -99999999         2\n");
   const Mesh mesh = read_text(text);
   test::expect_same(read_text(written(mesh)), mesh);
+}
+
+/// `as_written` with a text after the fields of every line, after each -1 and each number of a dataset, and
+/// with lines before, between and after datasets.
+std::string with_texts() {
+  std::string text = as_written();
+  std::string result = "made by hand\n\n";
+  int number = 0;
+  bool is_inside = false;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string line = text.substr(0, end);
+    text.erase(0, end + 1);
+    const bool has_number = line.find_first_not_of(" 0123456789.DE+-") == std::string::npos;
+    result += line;
+    if (has_number) result += fmt::format("  % text {}", ++number);
+    result += '\n';
+    if (line != "    -1") continue;
+    is_inside = !is_inside;
+    if (!is_inside) result += "between the datasets\n";
+  }
+  return result;
+}
+
+TEST(Unv, FieldsEndWhereTheFormatSays) {
+  const std::string text = with_texts();
+  Notes notes;
+  Mesh mesh = read_text(text, &notes);
+  EXPECT_THAT(notes, IsEmpty());
+  const Mesh plain = read_text(kFile);
+  EXPECT_EQ(mesh.points, plain.points);
+  EXPECT_EQ(mesh.cells, plain.cells);
+  EXPECT_EQ(mesh.data, plain.data);
+  EXPECT_EQ(mesh.sets.size(), plain.sets.size());
+  EXPECT_EQ(written(mesh), text);
+  EXPECT_THAT(mesh.format_metadata->contents(), Contains("texts after the numbers of a line"));
+  EXPECT_THAT(mesh.format_metadata->contents(), Contains("lines between datasets"));
+  // texts follow their nodes, elements and values
+  apply_reordering(mesh, Permutation::from_old_to_new({4, 3, 2, 1, 0}),
+                   Permutation::from_old_to_new({1, 0, 2, 3, 4}));
+  const std::string moved = written(mesh);
+  const auto text_of = [](const std::string& file, const std::string& line) {
+    const std::size_t begin = file.find('\n' + line) + 1 + line.size();
+    return file.substr(begin, file.find('\n', begin) - begin);
+  };
+  for (const std::string line :
+       {"   1.0000000000000000D+00   1.0000000000000000D+00   1.0000000000000000D+00",
+        "  5.00000E-01  0.00000E+00  1.00000E+00"}) {
+    EXPECT_THAT(text_of(moved, line), HasSubstr("% text")) << line;
+    EXPECT_EQ(text_of(moved, line), text_of(text, line)) << line;
+  }
+  EXPECT_EQ(text_of(moved, "         1       111         3         5         7         4"),
+            text_of(text, "         2       111         3         5         7         4"));
+  EXPECT_EQ(read_text(moved).points, mesh.points);
+}
+
+TEST(Unv, NumbersThatFillTheirFieldsNeedNoBlank) {
+  std::string text = with(std::string(kFile), "        50         1         1        11",
+                          "        50         1-1111111111234567890");
+  text = with(text, "  5.00000E-01  0.00000E+00  1.00000E+00", "  5.00000E-01-1.00000E+100-2.50000E+00");
+  const Mesh mesh = read_text(text);
+  EXPECT_EQ(mesh.points[4], (Point{1, 1, 1}));
+  EXPECT_THAT(std::get<std::vector<double>>(find_array(mesh, "displacement", Association::vertices)->values),
+              ElementsAre(0.5, -1e100, -2.5, 0.1, 1.23456e-07, 0));
 }
 
 TEST(Unv, ReadsOlderDatasets) {
@@ -484,6 +552,10 @@ TEST(Unv, RefusesBrokenFiles) {
   test::expect_broken(
       "m.unv",
       {{"no dataset", "1 2 3\n", ":1: expected a line of -1, which begins a dataset, found '1 2 3'"},
+       {"only text", "made by hand\n\n",
+        ":1: expected a line of -1, which begins a dataset, found 'made by hand'"},
+       {"no line of -1", changed("    -1\n    -1\n  2412", "    -1\n  2412"),
+        ":19: expected a line of -1, which begins a dataset, found '2412'; the file may be damaged"},
        {"no number", "    -1\n", "the file ends before the number of a dataset"},
        {"a word", "    -1\nnodes\n", ":2: the number of a dataset is 'nodes'"},
        {"two lines of -1", "    -1\n    -1\n", ":2: the number of a dataset is '-1'"},

@@ -13,10 +13,11 @@ namespace {
 constexpr std::string_view kNoText = "NONE";
 constexpr std::int64_t kMostComponents = 1000;
 
-/// Returns the whole numbers at the beginning of a line.
-std::vector<std::int64_t> integers_of(std::string_view line) {
+/// Returns the whole numbers at the beginning of a line, at most `most`.
+std::vector<std::int64_t> integers_of(std::string_view line, std::size_t most) {
   std::vector<std::int64_t> numbers;
-  for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
+  for (std::string_view word = next_word(line); !word.empty() && numbers.size() < most;
+       word = next_word(line)) {
     std::int64_t number = 0;
     const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), number);
     if (code != std::errc{} || end != word.data() + word.size()) break;
@@ -60,8 +61,8 @@ void set_name(Results& results, const std::vector<std::string_view>& lines,
 std::optional<Results> header_of_analysis(Scanner& in) {
   const std::vector<std::string_view> lines = take_lines(in, 13);
   if (lines.size() < 13) return {};
-  const std::vector<std::int64_t> location = integers_of(lines[2]);
-  const std::vector<std::int64_t> kinds = integers_of(lines[8]);
+  const std::vector<std::int64_t> location = integers_of(lines[2], 1);
+  const std::vector<std::int64_t> kinds = integers_of(lines[8], 6);
   if (location.size() != 1 || location[0] < 1 || location[0] > 2 || kinds.size() != 6) return {};
   Results results;
   results.association = location[0] == 1 ? Association::vertices : Association::cells;
@@ -73,8 +74,8 @@ std::optional<Results> header_of_analysis(Scanner& in) {
 std::optional<Results> header_of_old(Scanner& in, int dataset) {
   const std::vector<std::string_view> lines = take_lines(in, 6);
   if (lines.size() < 6) return {};
-  const std::vector<std::int64_t> kinds = integers_of(lines[5]);
-  const std::vector<std::int64_t> counts = integers_of(in.peek_line());
+  const std::vector<std::int64_t> kinds = integers_of(lines[5], 6);
+  const std::vector<std::int64_t> counts = integers_of(in.peek_line(), 2);
   if (kinds.size() != 6 || counts.size() < 2) return {};
   if (std::any_of(counts.begin(), counts.begin() + 2, [](std::int64_t n) { return n < 0 || n > 1000; })) {
     return {};
@@ -146,7 +147,7 @@ std::vector<std::int64_t> local_systems(std::string_view text) {
   }
   std::vector<std::int64_t> systems;
   for (std::size_t k = 4; k + 6 <= lines.size(); k += 6) {
-    const std::vector<std::int64_t> fields = integers_of(lines[k]);
+    const std::vector<std::int64_t> fields = integers_of(lines[k], 2);
     if (fields.size() < 2) break;
     bool is_global = fields[1] == 0;  // Cartesian
     for (std::size_t row = 0; row < 4; ++row) {

@@ -37,6 +37,16 @@ inline constexpr int kSystems = 2420;  ///< coordinate systems
 inline constexpr std::int64_t kNodeCode = 7;
 inline constexpr std::int64_t kElementCode = 8;
 
+// Widths of fields in columns.
+inline constexpr std::size_t kWholeWidth = 10;
+inline constexpr std::size_t kCoordinateWidth = 25;
+inline constexpr std::size_t kSingleWidth = 13;  ///< of real numbers in single precision
+inline constexpr std::size_t kWholesOnLine = 8;
+inline constexpr std::size_t kRecordWidth = kWholesOnLine * kWholeWidth;
+
+/// Texts after the fields of records, by item and by line of the item, both from 0.
+using Remarks = std::map<std::pair<Index, Index>, std::string>;
+
 /// The fields of a node besides its number and coordinates.
 struct NodeFields {
   std::int64_t system = 1;
@@ -90,6 +100,7 @@ struct OtherElement {
   std::int64_t number;
   ElementFields fields;
   std::vector<std::int64_t> nodes;  ///< numbers of the nodes
+  Remarks remarks = {};             ///< of item 0
 };
 
 /// A permanent group.
@@ -111,6 +122,14 @@ struct Results {
   std::int64_t components_in_file = 1;  ///< complex numbers count once
   int digits = 5;                       ///< digits after the point
   bool integers = false;                ///< whether the values are whole numbers
+  Remarks remarks = {};                 ///< by node or element of the file
+
+  /// Returns the greatest number of values on a line.
+  [[nodiscard]] std::size_t on_line() const { return integers ? kWholesOnLine : digits > 5 ? 3 : 6; }
+  /// Returns the width of a value in columns.
+  [[nodiscard]] std::size_t width() const {
+    return integers ? kWholeWidth : static_cast<std::size_t>(digits) + 8;
+  }
 };
 
 enum class DatasetKind : std::uint8_t { text, nodes, elements, groups, results };
@@ -119,9 +138,10 @@ enum class DatasetKind : std::uint8_t { text, nodes, elements, groups, results }
 struct Dataset {
   DatasetKind part = DatasetKind::text;
   int dataset = 0;
-  std::string text = {};  ///< all lines, if kept as they are; for results, the lines before the values
+  std::string text = {};  ///< all lines if they are kept as they are, else the lines before the first item
   Index first = 0;        ///< position in the file of its first node, element, group or result
   Index count = 0;
+  std::string end = {};                   ///< text after the -1 at its end
   std::vector<OtherElement> others = {};  ///< elements that are not cells
 };
 
@@ -132,7 +152,10 @@ struct Contents : DeckContents {
   FieldTable<ElementFields> element_fields;
   std::vector<Group> groups;
   std::vector<Results> results;
-  char exponent = 'D';  ///< letter before exponents of coordinates
+  Remarks node_remarks;     ///< by node of the file
+  Remarks element_remarks;  ///< by element of the file that is a cell
+  Remarks group_remarks;    ///< by group; the name's line does not count
+  char exponent = 'D';      ///< letter before exponents of coordinates
 };
 
 /// A universal file, and where its nodes and elements are in the mesh.

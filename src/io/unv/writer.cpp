@@ -23,7 +23,6 @@ constexpr std::string_view kName = "I-deas";
 constexpr std::size_t kLongestGroup = 40;
 constexpr std::size_t kLongestLine = 80;
 constexpr std::string_view kDelimiter = "-1";         // the line before and after a dataset
-constexpr int kWidth = 10;                            // columns of a whole number
 constexpr std::int64_t kLargestNumber = 999'999'999;  // a longer number fills its columns
 constexpr int kDigitsOfCoordinates = 16;
 
@@ -31,13 +30,16 @@ class Lines {
  public:
   Lines(OutputFile& out, std::string_view line_end) : out_(out), line_end_(line_end) {}
 
-  void text(std::string_view text) { out_.write(text); }
+  /// Writes lines as they are. Only the last line of a file may lack its end.
+  void text(std::string_view text) {
+    out_.write(text);
+    is_open_ = !text.empty() && text.back() != '\n' && text.back() != '\r';
+  }
 
-  void integer(std::int64_t value, int width = kWidth) {
+  void integer(std::int64_t value, std::size_t width = kWholeWidth) {
     const fmt::format_int digits(value);
-    const auto size = static_cast<int>(digits.size());
     // a number that fills its field would run into the number before
-    line_.append(static_cast<std::size_t>(std::max(width - size, line_.empty() ? 0 : 1)), ' ');
+    line_.append(std::max(width, digits.size() + (line_.empty() ? 0 : 1)) - digits.size(), ' ');
     line_.append(digits.data(), digits.size());
   }
 
@@ -58,8 +60,11 @@ class Lines {
     return read == value;
   }
 
-  void end_line() {
-    out_.write(line_ += line_end_);
+  /// Ends the line after `remark`, the text that follows its fields.
+  void end_line(std::string_view remark = {}) {
+    if (is_open_) out_.write(line_end_);
+    is_open_ = false;
+    out_.write(line_.append(remark) += line_end_);
     line_.clear();
   }
 
@@ -68,7 +73,10 @@ class Lines {
     end_line();
   }
 
-  void delimiter() { line("    -1"); }
+  void delimiter(std::string_view remark = {}) {
+    line_ = "    -1";
+    end_line(remark);
+  }
 
   void begin_dataset(int dataset) {
     delimiter();
@@ -85,7 +93,8 @@ class Lines {
 
   OutputFile& out_;
   std::string line_end_;
-  std::string line_;  // current line
+  std::string line_;      // current line
+  bool is_open_ = false;  // whether the line before has no end
   std::array<char, 64> buffer_{};
 };
 
@@ -103,6 +112,25 @@ std::shared_ptr<Contents> plain_contents(const Mesh& mesh) {
   file->sections.push_back({DatasetKind::elements, kElements, {}, 0, mesh.cell_count()});
   return file;
 }
+
+/// The texts after the fields of an item's lines.
+class RemarksOfItem {
+ public:
+  RemarksOfItem() = default;
+  RemarksOfItem(const Remarks& all, Index item) : all_(&all), item_(item) {}
+
+  /// Returns the text of the next line; empty if there is none.
+  std::string_view next() {
+    if (all_ == nullptr || all_->empty()) return {};
+    const auto found = all_->find({item_, line_++});
+    return found == all_->end() ? std::string_view() : found->second;
+  }
+
+ private:
+  const Remarks* all_ = nullptr;
+  Index item_ = 0;
+  Index line_ = 0;
+};
 
 class UnvWriter {
  public:
@@ -147,12 +175,24 @@ class UnvWriter {
     }
   }
 
+  /// Writes the first lines of a dataset as they were; in a new file, its number.
+  void begin(const Dataset& section) {
+    if (section.text.empty()) return lines_.begin_dataset(section.dataset);
+    lines_.text(section.text);
+  }
+
+  /// Returns the texts of a vertex or cell. `items`: the file's item at each vertex or cell.
+  [[nodiscard]] RemarksOfItem remarks_of(const Remarks& all, const std::vector<Index>& items,
+                                         Index at) const {
+    return {all, own_ == nullptr ? at : items[at]};
+  }
+
   [[nodiscard]] NodeFields fields_of_node(Index v) const {
     return own_ == nullptr ? NodeFields() : file_.node_fields[file_node_[v]];
   }
 
   void write_nodes(const Dataset& section) {
-    lines_.begin_dataset(section.dataset);
+    begin(section);
     const bool single = section.dataset == kNodesInSingle;
     for (Index v = section.first; v < section.first + section.count; ++v) {
       const NodeFields fields = fields_of_node(v);
@@ -160,13 +200,14 @@ class UnvWriter {
       lines_.integer(fields.system);
       lines_.integer(fields.displacement_system);
       lines_.integer(fields.colour);
-      if (!single) lines_.end_line();
+      RemarksOfItem remarks = remarks_of(file_.node_remarks, file_node_, v);
+      if (!single) lines_.end_line(remarks.next());
       for (const double value : mesh_.points[v]) {
         (void)lines_.real(value, single ? 5 : kDigitsOfCoordinates, file_.exponent, true);
       }
-      lines_.end_line();
+      lines_.end_line(remarks.next());
     }
-    lines_.delimiter();
+    lines_.delimiter(section.end);
   }
 
   [[nodiscard]] ElementFields fields_of_element(Index c) const {
@@ -184,7 +225,7 @@ class UnvWriter {
   }
 
   void write_elements(const Dataset& section) {
-    lines_.begin_dataset(section.dataset);
+    begin(section);
     std::vector<std::int64_t> nodes;
     for (Index c = section.first; c < section.first + section.count; ++c) {
       const auto cell = mesh_.cells[c];
@@ -193,38 +234,42 @@ class UnvWriter {
       for (std::size_t k = 0; k < cell.size(); ++k) {
         nodes[k] = numbers_.nodes.at(cell[order.empty() ? k : static_cast<std::size_t>(order[k])]);
       }
-      write_element(section, numbers_.elements.at(c), fields_of_element(c), nodes);
+      write_element(section, numbers_.elements.at(c), fields_of_element(c), nodes,
+                    remarks_of(file_.element_remarks, file_element_, c));
     }
     for (const OtherElement& other : section.others) {
       nodes = other.nodes;
       for (std::int64_t& node : nodes) node = numbers_.nodes.now(node);
       ElementFields fields = other.fields;
       if (fields.beam[0] != 0) fields.beam[0] = numbers_.nodes.now(fields.beam[0]);  // 0: no node
-      write_element(section, other.number, fields, nodes);
+      write_element(section, other.number, fields, nodes, {other.remarks, 0});
     }
-    lines_.delimiter();
+    lines_.delimiter(section.end);
   }
 
   void write_element(const Dataset& section, std::int64_t number, const ElementFields& fields,
-                     const std::vector<std::int64_t>& nodes) {
+                     const std::vector<std::int64_t>& nodes, RemarksOfItem remarks) {
     const Index count = index_size(nodes);
     if (section.dataset == kElementsOfOld) {
       list(std::array<std::int64_t, 8>{number, fields.type, fields.property_table, fields.property,
-                                       fields.material_table, fields.material, fields.colour, count});
+                                       fields.material_table, fields.material, fields.colour, count},
+           &remarks);
     } else {
       list(std::array<std::int64_t, 6>{number, fields.type, fields.property, fields.material, fields.colour,
-                                       count});
+                                       count},
+           &remarks);
     }
-    if (fields.has_beam) list(fields.beam);
-    list(nodes);
+    if (fields.has_beam) list(fields.beam, &remarks);
+    list(nodes, &remarks);
   }
 
-  /// Writes numbers, 8 on a line.
-  void list(std::span<const std::int64_t> numbers) {
-    constexpr std::size_t kOnLine = 8;
+  /// Writes numbers, 8 on a line, and the next of `remarks` after each line.
+  void list(std::span<const std::int64_t> numbers, RemarksOfItem* remarks = nullptr) {
     for (std::size_t k = 0; k < numbers.size(); ++k) {
       lines_.integer(numbers[k]);
-      if (k % kOnLine == kOnLine - 1 || k + 1 == numbers.size()) lines_.end_line();
+      if (k % kWholesOnLine == kWholesOnLine - 1 || k + 1 == numbers.size()) {
+        lines_.end_line(remarks == nullptr ? std::string_view() : remarks->next());
+      }
     }
   }
 
@@ -251,7 +296,7 @@ class UnvWriter {
   }
 
   void write_groups(const Dataset& section) {
-    lines_.begin_dataset(section.dataset);
+    begin(section);
     for (Index g = section.first; g < section.first + section.count; ++g) {
       const Group& group = file_.groups[g];
       std::vector<std::array<std::int64_t, 4>> members;
@@ -263,22 +308,22 @@ class UnvWriter {
       add_members(nodes, members);
       add_members(elements, members);
       members.insert(members.end(), group.others.begin(), group.others.end());
-      write_group(section.dataset, group.fields, group.name, members);
+      write_group(section.dataset, group.fields, group.name, members, {file_.group_remarks, g});
     }
-    lines_.delimiter();
+    lines_.delimiter(section.end);
   }
 
   void write_group(int dataset, const std::vector<std::int64_t>& fields, std::string_view name,
-                   const std::vector<std::array<std::int64_t, 4>>& members) {
+                   const std::vector<std::array<std::int64_t, 4>>& members, RemarksOfItem remarks) {
     for (const std::int64_t field : fields) lines_.integer(field);
     lines_.integer(index_size(members));
-    lines_.end_line();
+    lines_.end_line(remarks.next());
     lines_.line(name);
     const auto each = static_cast<std::size_t>(numbers_of_member(dataset));
     std::vector<std::int64_t> numbers;
     numbers.reserve(each * members.size());
     for (const auto& member : members) numbers.insert(numbers.end(), member.begin(), member.begin() + each);
-    list(numbers);
+    list(numbers, &remarks);
   }
 
   /// Takes and returns a free name that groups can have. A name equal to the delimiter would end the dataset.
@@ -313,7 +358,7 @@ class UnvWriter {
       note_renamed_set(set, name, notes_);
       if (!begun) lines_.begin_dataset(dataset_of_groups());
       begun = true;
-      write_group(dataset_of_groups(), {++last, 0, 0, 0, 0, 0, 0}, name, members);
+      write_group(dataset_of_groups(), {++last, 0, 0, 0, 0, 0, 0}, name, members, {});
     }
     if (begun) lines_.delimiter();
   }
@@ -346,20 +391,23 @@ class UnvWriter {
     lines_.text(section.text);
     const bool counts = results.association == Association::cells;
     write_rows(*array, results, counts ? results.components_in_file : 0);
-    lines_.delimiter();
+    lines_.delimiter(section.end);
   }
 
   /// Writes rows: a line with the number of the node or element and, if not 0, `components`; then the values.
   void write_rows(const DataArray& array, const Results& results, std::int64_t components) {
     const FileNumbers& numbers = numbers_.of(array.association);
     const auto width = static_cast<std::size_t>(array.components);
-    const std::size_t on_line = results.integers ? 8 : results.digits > 5 ? 3 : 6;
+    const std::size_t on_line = results.on_line();
+    const std::vector<Index>& items = array.association == Association::vertices ? file_node_ : file_element_;
     bool is_rounded = false;
     with_numbers(array.values, [&]<class Value>(const std::vector<Value>& values) {
       for (Index row = 0; row < row_count(array); ++row) {
-        lines_.integer(numbers.at(array.is_dense() ? row : array.indices[row]));
+        const Index at = array.is_dense() ? row : array.indices[row];
+        RemarksOfItem remarks = remarks_of(results.remarks, items, at);
+        lines_.integer(numbers.at(at));
         if (components > 0) lines_.integer(components);
-        lines_.end_line();
+        lines_.end_line(remarks.next());
         for (std::size_t k = 0; k < width; ++k) {
           const Value value = values[static_cast<std::size_t>(row) * width + k];
           if (results.integers) {
@@ -367,7 +415,7 @@ class UnvWriter {
           } else if (!lines_.real(static_cast<double>(value), results.digits, 'E', own_ != nullptr)) {
             is_rounded = own_ == nullptr;
           }
-          if (k % on_line == on_line - 1 || k + 1 == width) lines_.end_line();
+          if (k % on_line == on_line - 1 || k + 1 == width) lines_.end_line(remarks.next());
         }
       }
     });
