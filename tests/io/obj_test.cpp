@@ -149,6 +149,19 @@ TEST(Obj, TakesNegativeIndicesContinuedLinesAndIndicesAhead) {
   EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 3, 0, 1, 2, 3, 2, 1, 0, 1, 2}));
 }
 
+TEST(Obj, TakesCornersThatEndInSlashes) {
+  const TemporaryFolder folder;
+  const std::string lists = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0\n";
+  const Mesh plain = read_mesh(folder.file("plain.obj", lists + "f 1 2 3\nf 1/1 2/1 3/1\nl 1 2\np 3\n"));
+  for (const std::string_view slashes : {"/", "//"}) {
+    const std::string text =
+        fmt::format("{0}f 1{1} 2{1} 3{1}\nf 1/1/ 2/1/ 3/1/\nl 1{1} 2{1}\np 3{1}\n", lists, slashes);
+    const Mesh mesh = read_mesh(folder.file("a.obj", text));
+    EXPECT_EQ(mesh.cells, plain.cells) << slashes;
+    EXPECT_EQ(mesh.data, plain.data) << slashes;
+  }
+}
+
 TEST(Obj, KeepsVertexColors) {
   expect_order_and_back_to("a.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0 0 1\nv 0 1 0 0.25 0 0\nf 1 2 3\n");
   expect_order_and_back_to("a.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0.5\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 2 4 3\n");
@@ -212,13 +225,18 @@ TEST(Obj, BrokenFilesStopWithTheirLine) {
        {"texture too large", vertices + "vt 0\nf 1/1 2/1 3/2\n", ":5: vt 2 does not exist"},
        {"no normals", vertices + "f 1//1 2//1 3//1\n", ":4: vn 1 does not exist"},
        {"mixed corners", vertices + "vt 0\nf 1/1 2/1 3\n", ":5: corners of one cell have different"},
-       {"ends in slash", vertices + "f 1/ 2/ 3/\n", ":4: a corner ends in a slash"},
+       {"three slashes", vertices + "f 1/// 2 3\n", ":4: a number of vn is '/'"},
        {"too many slashes", vertices + "vt 0\nvn 1 0 0\nf 1/1/1/1 2 3\n", ":6: a number of vn is '1/1'"},
-       {"face of two", vertices + "f 1 2\n", ":4: a cell has 2 vertices; this kind needs at least 3"},
-       {"line of one", vertices + "l 1\n", ":4: a cell has 1 vertices; this kind needs at least 2"},
-       {"point of none", vertices + "p\n", ":4: a cell has 0 vertices"},
+       {"face of two", vertices + "f 1 2\n",
+        ":4: a face has 2 corners; it needs 3 or more, and a line is written as 'l 1 2'"},
+       {"face of one", vertices + "f 1//\n",
+        ":4: a face has 1 corner; it needs 3 or more, and a point is written as 'p 1//'"},
+       {"face of none", vertices + "f # 1 2 3\n", ":4: a face has 0 corners; it needs 3 or more"},
+       {"line of one", vertices + "l 1\n",
+        ":4: a line has 1 corner; it needs 2 or more, and a point is written as 'p 1'"},
+       {"point of none", vertices + "p\n", ":4: a point has 0 corners; it needs 1 or more"},
        {"error in a continued line", vertices + "f 1 \\\n2 \\\nx\n", ":4: a number of v is 'x'"},
-       {"ends continued", vertices + "f 1 2 \\", ":4: a cell has 2 vertices"},
+       {"ends continued", vertices + "f 1 2 \\", ":4: a face has 2 corners"},
        {"smoothing", vertices + "s smooth\nf 1 2 3\n", ":4: the smoothing group is 'smooth'"},
        {"free form", vertices + "cstype bspline\n", ":4: free-form geometry ('cstype') is not read"},
        {"parameter vertex", "vp 0 1\n", ":1: free-form geometry ('vp') is not read"},

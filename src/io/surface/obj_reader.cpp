@@ -414,33 +414,36 @@ class Reader {
                      fmt::format("there are {}, counted from 1", list.count));
   }
 
-  /// Reads a corner: v, v/vt, v//vn or v/vt/vn.
+  /// Reads a corner: v, v/vt, v//vn or v/vt/vn. Some programs end v and v/vt in slashes.
   void read_corner(std::string_view corner) {
     const auto until_slash = [&] {
       const std::string_view part = corner.substr(0, corner.find('/'));
       corner.remove_prefix(std::min(corner.size(), part.size() + 1));
       return part;
     };
-    const std::string_view whole = corner;
     corners_.push_back(place(until_slash(), vertices_));
-    const bool has_slash = !corner.empty();
     const std::string_view texture = until_slash();
     if (!texture.empty()) corner_texture_.push_back(place(texture, texture_));
     if (!corner.empty()) corner_normals_.push_back(place(corner, normals_));
-    if ((whole.back() == '/' && !has_slash) || whole.ends_with("//")) {
-      scanner_.fail("a corner ends in a slash", "write v, v/vt, v//vn or v/vt/vn");
-    }
   }
 
   void read_cell(std::string_view line, int dimension) {
+    const std::string_view corners = trimmed(line);
     corners_.clear();
     corner_texture_.clear();
     corner_normals_.clear();
     for (auto word = next_word(line); !word.empty(); word = next_word(line)) read_corner(word);
     const std::size_t least = static_cast<std::size_t>(dimension) + 1;
     if (corners_.size() < least) {
-      scanner_.fail(fmt::format("a cell has {} vertices", corners_.size()),
-                    fmt::format("this kind needs at least {}", least));
+      constexpr std::array<std::string_view, 3> kKinds{"point", "line", "face"};
+      const std::size_t count = corners_.size();
+      std::string remedy = fmt::format("it needs {} or more", least);
+      if (count > 0) {
+        remedy += fmt::format(", and a {} is written as '{} {}'", kKinds[count - 1], count == 1 ? 'p' : 'l',
+                              shown(corners));
+      }
+      scanner_.fail(fmt::format("a {} has {} corner{}", kKinds[least - 1], count, count == 1 ? "" : "s"),
+                    remedy);
     }
     for (const auto* indices : {&corner_texture_, &corner_normals_}) {
       if (!indices->empty() && indices->size() != corners_.size()) {
