@@ -120,6 +120,16 @@ TEST(Ply, ReadsAndWritesBothByteOrders) {
   }
 }
 
+TEST(Ply, KeepsZeroBytesAtTheEndOfBinaryData) {
+  const std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty uchar x\nproperty uchar y\n"
+      "property uchar z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n"
+      "\1\1\1\2\1\1\1\2\1\3\1\2";
+  const TemporaryFolder folder;
+  const Mesh mesh = read_mesh(folder.file("a.ply", text + '\0'));  // the last vertex of the face
+  EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{1, 2, 0}));
+}
+
 TEST(Ply, TakesHeadersWithEveryLineEnd) {
   const TemporaryFolder folder;
   for (const std::string end : {"\n", "\r\n", "\r"}) {

@@ -61,6 +61,9 @@ Mesh expect_alike(const std::string& name, const std::string& text) {
   const Outcome whole = read_on(1, folder.file(name, text));
   EXPECT_EQ(whole.fault, "");
   EXPECT_TRUE(read_on(2, folder.path() / name) == whole);
+  const std::string padded = folder.file(name, text + std::string("\n\0\0", 3));
+  for (const int threads : {1, 2, 7})
+    EXPECT_TRUE(read_on(threads, padded) == whole) << name << ", zero bytes";
   for (std::size_t k = 0; k < others.size(); ++k) {
     const std::size_t at = text.find('\n', text.size() / others.size() * k + 100) + 1;
     const std::string file =

@@ -4,6 +4,7 @@
 #include "io/stream/byte_order.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/stream/scanner.hpp"
+#include "io/stream/text_ends.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -43,6 +44,7 @@ FoamFile::FoamFile(const FilePath& path) {
   const FilePath found = existing(path);
   file_ = found.string();
   text_ = found.read();
+  text_.resize(without_padding(text_).size());
   read_header();
 }
 

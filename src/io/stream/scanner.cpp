@@ -24,12 +24,13 @@ std::string shown(std::string_view text) {
 Scanner::Scanner(const FilePath& file, char comment)
     : file_(file.string()),
       whole_(std::make_shared<const std::string>(file.read())),
-      text_(without_byte_order_mark(*whole_)),
+      text_(without_padding(without_byte_order_mark(*whole_))),
       comment_(comment) {
-  if (text_.empty()) throw InputError(file_, "is empty", "give a mesh file");
   constexpr std::string_view kWide("\xFE\xFF\0", 3);  // in little-endian UTF-16 the zero is the fourth byte
-  const bool is_wide = text_.starts_with(kWide) || (text_.starts_with("\xFF\xFE") && text_.find('\0') == 3);
+  const bool is_wide =
+      whole_->starts_with(kWide) || (whole_->starts_with("\xFF\xFE") && whole_->find('\0') == 3);
   if (is_wide) throw InputError(file_, "is text in UTF-16", "save it in UTF-8");
+  if (text_.empty()) throw InputError(file_, "has no text", "give a mesh file");
 }
 
 Scanner Scanner::at(std::int64_t byte, std::int64_t line) const {
@@ -45,6 +46,10 @@ Scanner Scanner::of_all_bytes() const {
   result.position_ = 0;
   result.line_ = 1;
   return result;
+}
+
+void Scanner::keep_padding() {
+  text_ = std::string_view(*whole_).substr(static_cast<std::size_t>(text_.data() - whole_->data()));
 }
 
 void Scanner::move_to(const Scanner& other) {

@@ -23,10 +23,11 @@ namespace meshorder {
 /// byte.
 ///
 /// Lines may end in LF, CRLF or CR, mixed. Words are separated by blanks, tabs and line ends. A comment
-/// extends from the comment character, if there is one, to the end of its line.
+/// extends from the comment character, if there is one, to the end of its line. Zero bytes and Ctrl-Z at the
+/// end of a text are left out.
 class Scanner {
  public:
-  /// Reads the whole file. Throws as `FilePath::read`, and InputError if the text is empty or UTF-16.
+  /// Reads the whole file. Throws as `FilePath::read`, and InputError if it has no text or is UTF-16.
   explicit Scanner(const FilePath& file, char comment = '\0');
 
   /// Returns a scanner of the same text at another place.
@@ -34,9 +35,11 @@ class Scanner {
   /// @param byte  0 … size of the text
   /// @param line  the line of that byte
   [[nodiscard]] Scanner at(std::int64_t byte, std::int64_t line) const;
-  /// Returns a scanner of all bytes of the file. Other scanners skip the byte order mark of UTF-8; in a
-  /// binary file its three bytes may be data.
+  /// Returns a scanner of all bytes of the file. Other scanners skip the byte order mark of UTF-8 and
+  /// padding; in a binary file both may be data.
   [[nodiscard]] Scanner of_all_bytes() const;
+  /// Adds the bytes to the text that were left out as padding: in a binary file they may be data. O(1).
+  void keep_padding();
   /// Moves to the position of another scanner of the same text; keeps the larger `last_comment` of both.
   /// O(1).
   void move_to(const Scanner& other);
@@ -130,7 +133,7 @@ class Scanner {
   /// Skips spaces; returns whether a word follows at once. If not, a word may still follow, for example after
   /// a tab.
   bool skip_spaces() {
-    while (text_[position_] == ' ') ++position_;  // a zero byte ends the text
+    while (text_[position_] == ' ') ++position_;  // a zero byte or Ctrl-Z ends the text
     return text_[position_] > ' ' && text_[position_] != comment_;
   }
   /// Skips spaces and line feeds; returns whether a word follows at once.
@@ -151,7 +154,7 @@ class Scanner {
 
   std::string file_;
   std::shared_ptr<const std::string> whole_;  ///< shared by scanners of one text
-  std::string_view text_;                     ///< part of `*whole_`; a zero byte follows it
+  std::string_view text_;                     ///< part of `*whole_`; a zero byte or Ctrl-Z follows it
   std::size_t position_ = 0;
   std::int64_t line_ = 1;
   std::size_t last_comment_ = 0;

@@ -37,6 +37,14 @@ std::string_view without_byte_order_mark(std::string_view text) {
   return text.substr(text.starts_with(kMark) ? kMark.size() : 0);
 }
 
+std::string_view without_padding(std::string_view text) {
+  constexpr std::string_view kPadding("\0\x1A", 2);
+  constexpr std::string_view kAfterText("\0\x1A \t\f\v\r\n", 8);
+  const std::size_t end = text.find_last_not_of(kAfterText) + 1;  // 0 if there is no other byte
+  const std::string_view content = text.substr(0, text.find_first_of(kPadding, end));
+  return content.find('\0') == std::string_view::npos ? content : text;
+}
+
 std::string comments_before(std::string_view text, char comment) {
   std::size_t end = 0;
   for (std::size_t at = first_mark(text, 0); at < text.size() && text[at] == comment;

@@ -14,6 +14,11 @@ namespace meshorder {
 /// Returns a text without the byte order mark of UTF-8 that some editors put before it.
 std::string_view without_byte_order_mark(std::string_view text);
 
+/// Returns a text without the zero bytes and the Ctrl-Z that some programs put after it, and without blanks
+/// and line ends between and after these. Returns other bytes unchanged if a zero byte precedes them: they
+/// are binary.
+std::string_view without_padding(std::string_view text);
+
 // Comments are kept for the writer.
 
 /// Returns verbatim all lines up to the last comment before the data; empty if no comment precedes the data.

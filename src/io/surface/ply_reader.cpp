@@ -352,6 +352,7 @@ class Reader {
   explicit Reader(const FilePath& path) : body_(path) {
     read_header(body_.scanner, *header_);
     body_.binary = header_->encoding != Encoding::ascii;
+    if (body_.binary) body_.scanner.keep_padding();
     body_.order = header_->encoding == Encoding::big_endian ? std::endian::big : std::endian::little;
     for (const Element& element : header_->elements) {
       if (element.role == Role::vertices) vertex_count_ = element.count;
