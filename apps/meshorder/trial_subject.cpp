@@ -87,8 +87,9 @@ class TriedMesh final : public TrialSubject {
   }
 
   [[nodiscard]] std::vector<std::string> orders() const override {
-    const fs::path extension = fs::path(path_).extension();
-    if (extension == ".mtx" || extension == ".graph") return {kOrdersOfMatrix.begin(), kOrdersOfMatrix.end()};
+    const std::string_view format = format_of(path_).name;
+    if (format == "MatrixMarket" || format == "METIS")
+      return {kOrdersOfMatrix.begin(), kOrdersOfMatrix.end()};
     return {kOrdersOfMesh.begin(), kOrdersOfMesh.end()};
   }
 

@@ -155,19 +155,31 @@ bool is_deck(std::string_view word, std::string_view rest) {
   return !is_one_of(kOfVega);
 }
 
-/// Returns whether the first line that is neither blank nor a comment can begin a Nastran file.
+/// Returns whether a file can be one of Nastran: by its first line that is neither blank nor a comment, or by
+/// a BEGIN BULK soon after.
 bool is_bulk_data(std::string_view bytes) {
   constexpr std::array<std::string_view, 6> kWords{"SOL", "CEND", "BEGIN", "NASTRAN", "GRID", "GRID*"};
-  while (!bytes.empty()) {
+  constexpr int kMostLines = 100;
+  bool is_first = true;
+  for (int k = 0; k < kMostLines && !bytes.empty(); ++k) {
     const std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));
     bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));
     std::string_view rest = line;
     const std::string_view word = next_word(rest, " \t,");
     if (word.empty() || word.starts_with('$')) continue;
-    return std::any_of(kWords.begin(), kWords.end(),
-                       [&](std::string_view known) { return same_but_for_case(known, word); });
+    if (is_first && std::any_of(kWords.begin(), kWords.end(),
+                                [&](std::string_view known) { return same_but_for_case(known, word); })) {
+      return true;
+    }
+    if (same_but_for_case(word, "BEGIN") && same_but_for_case(next_word(rest, " \t,"), "BULK")) return true;
+    is_first = false;
   }
   return false;
+}
+
+/// Returns whether a file whose first word begins with $ is Gmsh's: text of other programs has such comments.
+bool is_gmsh(std::string_view word, std::string_view rest) {
+  return word == "$MeshFormat" || word == "$NOD" || rest.find("$MeshFormat") != std::string_view::npos;
 }
 
 /// Returns the name of the format whose files begin like `bytes`; empty if no format fits. Skips comments
@@ -186,9 +198,10 @@ std::string_view format_that_begins(std::string_view bytes) {
     if (line.starts_with("%%MatrixMarket")) return "MatrixMarket";
     const std::string_view word = next_word(line);
     if (word.empty() || word.front() == '#' || word.front() == '%') continue;
-    if (word.starts_with("$")) return "Gmsh";
+    if (word.starts_with("$")) return is_gmsh(word, bytes) ? "Gmsh" : "";
     if (word.starts_with("MeshVersion")) return "Medit";
     if (word.starts_with("<")) return is_xdmf(word, line, bytes) ? "XDMF" : "VTU";
+    if (same_but_for_case(word, "*KEYWORD")) return {};  // LS-DYNA
     if (word == "-1") return "UNV";
     if (word.starts_with("*")) return is_deck(word, bytes) ? "Abaqus" : "Vega";
     if (word.ends_with("OFF")) return "OFF";
@@ -214,6 +227,33 @@ std::filesystem::path without_piece_numbers(const std::filesystem::path& path) {
   const bool is_exodus_name =
       std::find(kExodusExtensions.begin(), kExodusExtensions.end(), extension) != kExodusExtensions.end();
   return is_exodus_name ? path.parent_path() / once.stem() : path;
+}
+
+/// Returns the first bytes of a file without its byte order mark; nothing if it is not a file.
+std::string beginning(const FilePath& path) {
+  constexpr std::size_t kMost = 65536;
+  if (!path.is_file() || path.is_empty()) return {};
+  const std::string bytes = uncompressed_start(path.read_first(kMost), path.string());
+  return std::string(without_byte_order_mark(bytes));
+}
+
+/// Throws InputError if a file is of a format other than `named`, the format of its name; "" if its name is
+/// not that of a format.
+void refuse_by_content(const FilePath& path, std::string_view named) {
+  const std::string bytes = beginning(path);
+  const std::string_view name = has_size_of_stl(bytes) ? "STL" : format_that_begins(bytes);
+  if (name.empty() || name == named) return;
+  if (name == "Abaqus" && named == "Vega") return;  // their keywords are alike
+  if (name == "UCD" && !named.empty()) return;      // other files have columns of numbers, too
+  if (name == "VTU" && bytes.find("UnstructuredGrid") == std::string::npos) return;
+  const auto found = std::find_if(kFormats.begin(), kFormats.end(),
+                                  [&](const Format& format) { return format.name == name; });
+  if (found == kFormats.end()) return;
+  const std::string fault = named.empty() ? fmt::format("looks like {}, but its name does not end so", name)
+                                          : fmt::format("looks like {}, not like {}", name, named);
+  throw InputError(path.string(), fault,
+                   fmt::format("name it {}{}", found->extensions.front(),
+                               without_gz(path.path()) == path.path() ? "" : ".gz"));
 }
 
 }  // namespace
@@ -256,11 +296,17 @@ const Format& format_of(const std::filesystem::path& path) {
 }
 
 const Format& format_of_file(const FilePath& path) {
-  const Format& format = format_of(path.path());
-  if (format.name != "Abaqus" || !path.is_file()) return format;
-  constexpr std::size_t kFirst = 65536;
-  const std::string bytes = uncompressed_start(path.read_first(kFirst), path.string());
-  return ucd::begins_ucd(without_byte_order_mark(bytes)) ? format_named("UCD") : format;
+  try {
+    const Format& format = format_of(path.path());
+    return format.name == "Abaqus" && ucd::begins_ucd(beginning(path)) ? format_named("UCD") : format;
+  } catch (const InputError&) {
+    refuse_by_content(path, "");
+    throw;
+  }
+}
+
+void refuse_other_content(const FilePath& path, const Format& format) {
+  refuse_by_content(path, format.name);
 }
 
 const Format& output_format_of(const std::filesystem::path& path) {

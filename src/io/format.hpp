@@ -132,8 +132,13 @@ void write_arranged(const Mesh& mesh, const FilePath& path, const WriteOptions& 
 // The extension .inp belongs to two formats: Abaqus decks and AVS UCD.
 
 /// As `format_of`, for a file to be read: .inp is AVS UCD if the file's first bytes look like UCD, else
-/// Abaqus. Also throws InputError for an .inp file that cannot be read.
+/// Abaqus. The error for an extension that is not read names the format of the content. Also throws
+/// InputError for an .inp file that cannot be read.
 const Format& format_of_file(const FilePath& path);
+
+/// Throws InputError if the first bytes of a file are clearly of another format than `format`, and says
+/// which. For files that could not be read.
+void refuse_other_content(const FilePath& path, const Format& format);
 
 /// As `output_format_of`, for a mesh of the format `of_mesh` (`Mesh::format`): .inp means AVS UCD if the mesh
 /// came from it, else Abaqus.

@@ -87,6 +87,7 @@ Mesh read_together(const FilePath& path, const Format& format, Notes& notes) {
       if (attempt == kAttempts || !is_written_to(path, began)) throw;
     } catch (const InputError&) {
       refuse_pointer(path);
+      refuse_other_content(path, format);
       throw;
     }
     std::this_thread::sleep_for(kPause);

@@ -58,11 +58,13 @@ TEST(Format, ExtensionsAreUnique) {
   EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end());
 }
 
+/// Extensions of formats whose files are text.
+constexpr std::array<std::string_view, 12> kTexts{".msh", ".mesh", ".vtk", ".vtu", ".off", ".obj",
+                                                  ".ply", ".stl",  ".unv", ".inp", ".bdf", ".avs"};
+
 TEST(Format, PassesOverAByteOrderMark) {
   const TemporaryFolder folder;
   const Mesh mesh = test::cells_of_type(Shape::triangle, 3, 2);
-  constexpr std::array<std::string_view, 12> kTexts{".msh", ".mesh", ".vtk", ".vtu", ".off", ".obj",
-                                                    ".ply", ".stl",  ".unv", ".inp", ".bdf", ".avs"};
   for (const std::string_view extension : kTexts) {
     const std::filesystem::path plain = folder.path() / ("plain" + std::string(extension));
     write_mesh(mesh, plain);
@@ -80,8 +82,70 @@ TEST(Format, PassesOverAByteOrderMark) {
     EXPECT_THAT(test::read_error(folder.file(name, wide)), HasSubstr("is text in UTF-16; save it in UTF-8"));
   }
   EXPECT_EQ(format_of_bytes("\xEF\xBB\xBFMeshVersionFormatted 2")->name, "Medit");
-  EXPECT_THAT(test::read_error(folder.file("only.obj", "\xEF\xBB\xBF")), HasSubstr("is empty"));
+  EXPECT_THAT(test::read_error(folder.file("only.obj", "\xEF\xBB\xBF")), HasSubstr("has no text"));
   EXPECT_THAT(test::read_error(folder.file("short.obj", "\xFF\xFE")), HasSubstr("short.obj"));
+}
+
+TEST(Format, PassesOverZeroBytesAfterTheText) {
+  const TemporaryFolder folder;
+  std::vector<std::string> texts(kTexts.begin(), kTexts.end());
+  texts.insert(texts.end(), {".veg", ".node", ".mtx", ".graph"});
+  for (const std::string& extension : texts) {
+    const bool is_matrix = extension == ".mtx" || extension == ".graph";
+    const bool is_solid = extension == ".node" || extension == ".veg";
+    const std::string name = "padded" + extension;
+    const std::filesystem::path plain = folder.path() / ("plain" + extension);
+    write_mesh(is_matrix  ? test::cells_of_type(Shape::line, 2, 2)
+               : is_solid ? test::cells_of_type(Shape::tetrahedron, 4, 2)
+                          : test::cells_of_type(Shape::triangle, 3, 2),
+               plain);
+    if (test::content_of(plain).find('\0') != std::string::npos) continue;  // is binary
+    const Mesh expected = read_mesh(plain);
+    for (const std::string_view padding : {std::string_view("\0", 1), std::string_view("\r\n\0\0\0", 5),
+                                           std::string_view("\x1A"), std::string_view("\0 \n\0\n", 5)}) {
+      if (extension == ".node")
+        (void)folder.file("padded.ele", test::content_of(folder.path() / "plain.ele").append(padding));
+      const Mesh padded = read_mesh(folder.file(name, test::content_of(plain).append(padding)));
+      EXPECT_EQ(padded.points, expected.points) << name;
+      EXPECT_EQ(padded.cells, expected.cells) << name;
+      write_mesh(padded, folder.path() / name);
+      const std::string written = test::content_of(folder.path() / name);
+      EXPECT_EQ(written.find_first_of(std::string_view("\0\x1A", 2)), std::string::npos) << name;
+    }
+  }
+  EXPECT_THAT(test::read_error(folder.file("zeros.obj", std::string(100, '\0'))), HasSubstr("has no text"));
+  EXPECT_THAT(test::read_error(folder.file("within.obj", std::string("v 0 0 0\n\0v 1 0 0\n\0", 18))),
+              HasSubstr(":2: the statement '?v' is unknown"));
+}
+
+TEST(Format, NamesTheFormatOfTheContentWhereTheNameIsThatOfAnother) {
+  const TemporaryFolder folder;
+  const Mesh mesh = test::cells_of_type(Shape::tetrahedron, 4, 2);
+  write_mesh(mesh, folder.path() / "a.vtu");
+  const std::string vtu = test::content_of(folder.path() / "a.vtu");
+  const std::string nastran = "ID A,B\nSOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nENDDATA\n";
+  struct Case {
+    std::string name;
+    std::string text;
+    std::string expected;
+  };
+  const std::vector<Case> cases{
+      {"a.inp", nastran, "looks like Nastran, not like Abaqus; name it .bdf"},
+      {"a.unv", nastran, "looks like Nastran, not like UNV; name it .bdf"},
+      {"a.vtk", vtu, "looks like VTU, not like VTK; name it .vtu"},
+      {"a.off", "solid a\nendsolid a\n", "looks like STL, not like OFF; name it .stl"},
+      {"a.dat", nastran, "looks like Nastran, but its name does not end so; name it .bdf"},
+      {"noname", vtu, "looks like VTU, but its name does not end so; name it .vtu"},
+      {"a.xml", "<mesh/>", "may be a mesh of legacy FEniCS"},
+      {"b.vtk", "<VTKFile type=\"PolyData\"/>", "b.vtk:1: "},
+      {"a.veg", "*PROPERTY\n", "a.veg:2: the file has no *VERTICES"},
+      {"b.inp", "$ comment\nNODE 1\n", "b.inp:1: expected a keyword"},
+      {"c.dat", "*KEYWORD\n*NODE\n", "unknown extension '.dat'"},
+      {"d.dat", "nothing known", "unknown extension '.dat'"},
+  };
+  for (const Case& one : cases) {
+    EXPECT_THAT(test::read_error(folder.file(one.name, one.text)), HasSubstr(one.expected)) << one.name;
+  }
 }
 
 TEST(Format, SaysThatAFileIsAPointerOfGitLfs) {

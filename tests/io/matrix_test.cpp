@@ -144,29 +144,34 @@ TEST(MatrixMarket, RefusesBrokenFiles) {
   const std::string file(kReal);
   const std::string head = "%%MatrixMarket matrix coordinate real general\n";
   test::expect_broken(
-      "a.mtx", {
-                   {"no banner", file.substr(file.find('\n') + 1), ":1: is not a Matrix Market file"},
-                   {"vector", with(file, "matrix", "vector"), ":1: holds a 'vector'"},
-                   {"dense", with(file, "coordinate", "array"), ":1: the matrix is stored as 'array'"},
-                   {"field", with(file, "real", "quaternion"), ":1: the field of the matrix is 'quaternion'"},
-                   {"symmetry", with(file, "general", "nice"), ":1: the symmetry of the matrix is 'nice'"},
-                   {"rectangular", with(file, "4 4 6", "4 5 6"),
-                    ":4: the matrix has 4 rows and 5 columns; only a square"},
-                   {"huge", head + "2000000000 2000000000 1\n1 1 1\n",
-                    ":2: the number of rows is 2000000000, but only"},
-                   {"many entries", with(file, "4 4 6", "4 4 600000000"),
-                    ":4: the number of entries is 600000000, but"},
-                   {"negative", with(file, "4 4 6", "-4 -4 6"), ":4: the number of rows is -4"},
-                   {"fewer", with(file, "4 4 6", "4 4 7"), "unexpected end of file"},
-                   {"more", with(file, "4 4 6", "4 4 5"), ":10: more entries"},
-                   {"row 0", with(file, "3 3 7", "0 3 7"), ":8: a row is 0; 1 to 4"},
-                   {"column 5", with(file, "3 3 7", "3 5 7"), ":8: a column is 5; 1 to 4"},
-                   {"word", with(file, "3 3 7", "3 3 x"), ":8: a value is 'x'"},
-                   {"four numbers", with(file, "3 3 7", "3 3 7 1"), ":8: the line of an entry has too many"},
-                   {"none", head + "3 3 0\n", "has no entries; a matrix needs at least one"},
-                   {"no number of rows", head + "x 3 0\n", ":2: the number of rows is 'x'"},
-                   {"cut", head, "unexpected end of file"},
-               });
+      "a.mtx",
+      {
+          {"no banner", file.substr(file.find('\n') + 1), ":1: is not a Matrix Market file"},
+          {"vector", with(file, "matrix", "vector"), ":1: holds a 'vector'"},
+          {"dense", with(file, "coordinate", "array"), ":1: the matrix is stored as 'array'"},
+          {"field", with(file, "real", "quaternion"), ":1: the field of the matrix is 'quaternion'"},
+          {"symmetry", with(file, "general", "nice"), ":1: the symmetry of the matrix is 'nice'"},
+          {"rectangular", with(file, "4 4 6", "4 5 6"),
+           ":4: the matrix has 4 rows and 5 columns; only a square"},
+          {"no sizes", head + "2 1\n3 2\n4 3\n",
+           ":2: the line of sizes has 2 numbers; three are needed: rows, columns and entries"},
+          {"one size", head + "3 % rows\n3 3\n", ":2: the line of sizes has 1 number; three"},
+          {"four sizes", with(file, "4 4 6", "4 4 6 1"), ":4: the line of sizes has too many numbers"},
+          {"huge", head + "2000000000 2000000000 1\n1 1 1\n",
+           ":2: the number of rows is 2000000000, but only"},
+          {"many entries", with(file, "4 4 6", "4 4 600000000"),
+           ":4: the number of entries is 600000000, but"},
+          {"negative", with(file, "4 4 6", "-4 -4 6"), ":4: the number of rows is -4"},
+          {"fewer", with(file, "4 4 6", "4 4 7"), "unexpected end of file"},
+          {"more", with(file, "4 4 6", "4 4 5"), ":10: more entries"},
+          {"row 0", with(file, "3 3 7", "0 3 7"), ":8: a row is 0; 1 to 4"},
+          {"column 5", with(file, "3 3 7", "3 5 7"), ":8: a column is 5; 1 to 4"},
+          {"word", with(file, "3 3 7", "3 3 x"), ":8: a value is 'x'"},
+          {"four numbers", with(file, "3 3 7", "3 3 7 1"), ":8: the line of an entry has too many"},
+          {"none", head + "3 3 0\n", "has no entries; a matrix needs at least one"},
+          {"no number of rows", head + "x 3 0\n", ":2: the number of rows is 'x'"},
+          {"cut", head, "unexpected end of file"},
+      });
 }
 
 TEST(MatrixMarket, OtherMeshesOfLinesAreMatrices) {

@@ -145,6 +145,11 @@ class MatrixReader {
   }
 
   void read_sizes() {
+    if (!in_.at_end() && in_.words_in_line() < 3) {
+      in_.fail(fmt::format("the line of sizes has {} number{}", in_.words_in_line(),
+                           in_.words_in_line() == 1 ? "" : "s"),
+               "three are needed: rows, columns and entries");
+    }
     const auto rows = in_.integer<std::int64_t>("the number of rows");
     const auto columns = in_.integer<std::int64_t>("the number of columns");
     if (rows != columns) {
@@ -152,7 +157,8 @@ class MatrixReader {
                "only a square matrix can be ordered");
     }
     entries_ = in_.count("the number of entries", 4);
-    if (!in_.at_line_end()) in_.fail("the line of sizes has too many numbers", "three are needed");
+    if (!in_.at_line_end())
+      in_.fail("the line of sizes has too many numbers", "three are needed: rows, columns and entries");
     // a large number of rows must not exceed the number of bytes that follow
     constexpr std::int64_t kFewRows = 1 << 20;
     if (rows < 0 || rows > kFewRows) (void)in_.checked_count(rows, "the number of rows", 1);

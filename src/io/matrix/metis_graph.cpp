@@ -423,7 +423,8 @@ void write_graph(const Mesh& mesh, const FilePath& path, Notes& notes) {
 }  // namespace matrix
 
 Format metis_graph_format() {
-  Format format{"METIS", {".graph"}, false, matrix::read_graph, matrix::write_graph, matrix::is_edge};
+  Format format{"METIS",        {".graph", ".metis"}, false, matrix::read_graph, matrix::write_graph,
+                matrix::is_edge};
   format.settle_cells = matrix::settle_edges;
   return format;
 }
