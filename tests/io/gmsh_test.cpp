@@ -378,8 +378,8 @@ TEST(Gmsh, LeavesOutPeriodicPairsOfNodesThatAreNotThere) {
 TEST(Gmsh, LeavesOutPeriodicPairsWithANodeOfAnEarlierPair) {
   for (const char* const pairs : {"2\n10 20\n10 30\n", "2\n10 20\n30 20\n", "2\n10 20\n10 20\n"}) {
     Notes notes;
-    const Mesh mesh =
-        read_text(replaced(std::string(kGmsh41), "2\n10 2\n20 30\n$EndP", std::string(pairs) + "$EndP"), &notes);
+    const Mesh mesh = read_text(
+        replaced(std::string(kGmsh41), "2\n10 2\n20 30\n$EndP", std::string(pairs) + "$EndP"), &notes);
     EXPECT_EQ(set_of(mesh, "gmsh:periodic 2 3").members.size(), 1U);
     EXPECT_EQ(set_of(mesh, "gmsh:periodic 2 3 master").members.size(), 1U);
     EXPECT_THAT(notes, ElementsAre(HasSubstr("1 pairs of $Periodic are ignored: an earlier pair")));
