@@ -4,13 +4,14 @@
 // fresh one:
 //
 //   changing [--traces stir,churn,refine,cut,dam] [--methods hilbert,hilbert-fronts,rcm,fiedler]
-//            [--points 50000] [--steps 120] [--threads 1]
+//            [--points 50000] [--steps 120] [--threads 1] [--check none|fast|full]
 //
 // For each trace (see traces.hpp), scrambled at first, and each method: `fresh` orders all vertices in each
 // step, `kept` is a Reorderer, `carried` a Reorderer that never orders anew after the first step. Prints:
 // - by how much mean log2 spans exceed those of fresh orders: the mean of the steps, and the worst step;
-// - the costs of orders relative to those of fresh orders: from the graph, without a check; and from cells,
-//   where fresh orders include building the graph;
+// - the costs of orders relative to those of fresh orders: from the graph; and from cells, where fresh orders
+//   include building the graph;
+// - for methods of points alone, the cost of sorting the points anew in each step;
 // - for each kind of repair, the number and the median cost, relative to a fresh order.
 //
 // Costs are processor time of the calls; with several threads, wall-clock time. Needs meshorder-delaunay
@@ -43,6 +44,7 @@ namespace {
 using namespace meshorder;
 
 int threads = 1;
+Check level = Check::none;  // of the check of graphs and cells
 
 /// Makes the call and adds the seconds that it took.
 template <class Call>
@@ -56,7 +58,7 @@ auto timed(double& seconds, const Call& call) {
   return result;
 }
 
-OrderOptions options() { return {.check = Check::none, .run = {.threads = threads}}; }
+OrderOptions options() { return {.check = level, .run = {.threads = threads}}; }
 
 /// A step of a trace in a program's arrays, which have an order of their own.
 struct Arrays {
@@ -123,7 +125,7 @@ class Places {
 /// A program that orders its arrays in each step by one strategy.
 class Strategy {
  public:
-  enum class Kind { fresh, kept, carried, kept_cells };
+  enum class Kind { fresh, kept, carried, kept_cells, points };
 
   Strategy(const std::string& method, Kind kind)
       : kind_(kind),
@@ -156,6 +158,8 @@ class Strategy {
     }
     double taken = 0;
     Update update = timed(taken, [&] {
+      if (kind_ == Kind::points)
+        return Reorderer({.method = method_, .order = options()}).update(mesh.points);
       return kind_ == Kind::kept_cells ? reorderer_.update(mesh, previous)
                                        : reorderer_.update(graph, mesh.points, previous);
     });
@@ -191,6 +195,8 @@ void run(const std::string& name, const std::vector<std::string>& methods, Index
     auto& row = strategies.emplace_back();
     for (const Kind kind : {Kind::fresh, Kind::kept, Kind::carried, Kind::kept_cells})
       row.push_back(std::make_unique<Strategy>(method, kind));
+    if (method == "hilbert" || method == "morton")
+      row.push_back(std::make_unique<Strategy>(method, Kind::points));
   }
   for (Index k = 0; k < steps; ++k) {
     const TraceStep step = trace->next();
@@ -208,12 +214,14 @@ void run(const std::string& name, const std::vector<std::string>& methods, Index
       repairs += fmt::format("{}{} {} at {:.1f} %", repairs.empty() ? "" : ", ", taken.size(),
                              to_string(repair), 100 * median(taken) * steps / fresh.seconds);
     }
+    const std::string points =
+        strategies[m].size() < 5 ? "" : fmt::format("{:.1f} ms", 1e3 * strategies[m][4]->seconds / steps);
     fmt::print(
-        "| {} | {} | {:.2f} | {} | {} | {:.1f} ms | {:.0f} % | {:.0f} % | {:.1f} ms | {:.0f} % | {} |\n",
+        "| {} | {} | {:.2f} | {} | {} | {:.1f} ms | {:.0f} % | {:.0f} % | {:.1f} ms | {:.0f} % | {} | {} |\n",
         name, methods[m], fresh.spans.back(), above(kept, fresh), above(carried, fresh),
         1e3 * fresh.seconds / steps, 100 * kept.seconds / fresh.seconds,
         100 * carried.seconds / fresh.seconds, 1e3 * (fresh.seconds + fresh.graph_seconds) / steps,
-        100 * cells.seconds / (fresh.seconds + fresh.graph_seconds), repairs);
+        100 * cells.seconds / (fresh.seconds + fresh.graph_seconds), points, repairs);
     (void)std::fflush(stdout);
   }
 }
@@ -231,10 +239,13 @@ int main(int argc, char** argv) {
   app.add_option("--points", count)->check(CLI::Range(1000, 10000000));
   app.add_option("--steps", steps)->check(CLI::Range(1, 100000));
   app.add_option("--threads", threads)->check(CLI::Range(1, 1024));
+  app.add_option("--check", level)
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Check>{{"none", Check::none}, {"fast", Check::fast}, {"full", Check::full}}));
   CLI11_PARSE(app, argc, argv);
   fmt::print(
       "| trace | method | log2 span | kept | carried | fresh | kept | carried | fresh from cells | kept | "
-      "repairs |\n"
-      "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |\n");
+      "points alone | repairs |\n"
+      "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |\n");
   for (const std::string& trace : split(traces)) run(trace, split(methods), count, steps);
 }
