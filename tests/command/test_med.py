@@ -13,6 +13,7 @@ import meshio
 import numpy
 import pytest
 from conftest import MESHORDER
+from hdf5_lists import listed, records_order
 
 MAKER = pathlib.Path(__file__).with_name("med_by_library.py")
 NO_PROFILE = "MED_NO_PROFILE_INTERNAL"
@@ -273,6 +274,64 @@ def test_groups_become_sets_and_sets_groups(command):
     # tetrahedra have MED's orientation
     corners = new.points[next(block.data for block in new.cells if block.type == "tetra")]
     assert (numpy.linalg.det(corners[:, 1:] - corners[:, :1]) < 0).all()
+
+
+def add_families(file, count):
+    """Families whose names are in another sequence than their numbers."""
+    del file["FAS/mesh/ELEME"]
+    families = file["FAS/mesh"].create_group("ELEME", track_order=True)
+    for k in range(count):
+        family = families.create_group(f"the family named {(7 * k + 3) % count}")
+        family.attrs["NUM"] = -1 - k
+        group = family.create_group("GRO")
+        group.attrs["NBR"] = 1
+        group["NOM"] = numpy.array([f"face{k}"], "S80")
+
+
+@pytest.mark.parametrize("count", [3, 6, 20])
+def test_steps_and_families_keep_their_sequence(command, count):
+    """Boundary conditions go by the sequence of families, and a program reads the last step."""
+    by_meshio(command.folder / "old.med")
+
+    def add(file, mesh, step):
+        field = file["CHA"].create_group("T", track_order=True)
+        for key, value in file["CHA/heat"].attrs.items():
+            field.attrs[key] = value
+        old, = file["CHA/heat"].values()
+        for k in range(count):
+            number = (7 * k + 4) % count
+            file.copy(old, field, name=f"{number:020d}{-1:020d}")
+            field[f"{number:020d}{-1:020d}"].attrs.modify("NDT", number)
+        add_families(file, count)
+        rewrite(step["MAI/TE4"], "FAM", -1 - numpy.arange(20) % count)
+        rewrite(step["MAI/TR3"], "FAM", -1 - numpy.arange(8) % count)
+
+    change(command.folder / "old.med", add)
+    old = listed(command.folder / "old.med")
+    for vertices, elements in (("original", "original"), ("scrambled", "scrambled")):
+        command.ok("order", "old.med", "-o", "new.med", "--vertices", vertices, "--elements", elements)
+        new = listed(command.folder / "new.med")
+        for group in ("CHA/T", "FAS/mesh/ELEME"):
+            assert new[group] == old[group] and len(new[group]) == count
+
+
+def test_families_are_listed_in_the_sequence_of_groups(command):
+    """Files before version 3.2 are listed by name, later ones by creation."""
+    by_meshio(command.folder / "old.med")
+
+    def add(file, mesh, step):
+        add_families(file, 12)
+        rewrite(step["MAI/TE4"], "FAM", -1 - numpy.arange(20) % 12)
+        rewrite(step["MAI/TR3"], "FAM", numpy.zeros(8, int))
+
+    change(command.folder / "old.med", add)
+    command.ok("order", "old.med", "-o", "between.vtu", "--vertices", "original", "--elements", "original")
+    command.ok("order", "between.vtu", "-o", "new.med", "--vertices", "original", "--elements", "original")
+    names = listed(command.folder / "new.med")["FAS/mesh/ELEME"]
+    with h5py.File(command.folder / "new.med") as file:
+        families = file["FAS/mesh/ELEME"]
+        assert records_order(families) and names == sorted(names)
+        assert [names_in(families[name]["GRO/NOM"]) for name in names] == [[f"face{k}"] for k in range(12)]
 
 
 def test_steps_come_back_from_other_formats(command, by_library):

@@ -165,6 +165,26 @@ def test_meshes_of_other_formats_become_files_that_vtk_reads(command, tmp_path):
         assert after == before, extension
 
 
+def test_arrays_keep_the_sequence_in_which_vtk_lists_them(command, tmp_path):
+    names = ["zeta", "an array with a long name", "mu", "alpha", "b", "another array with a long name"]
+
+    def list_anew(group):
+        kept = {name: group["CellData"][name][()] for name in group["CellData"]}
+        del group["CellData"]
+        cells = group.create_group("CellData", track_order=True)
+        for name in [*names, *kept]:
+            cells[name] = kept.get(name, numpy.arange(len(group["Types"])) + 0.5)
+
+    write(tmp_path / "a.vtkhdf")
+    change(tmp_path / "a.vtkhdf", list_anew)
+    before = list(by_vtk(tmp_path / "a.vtkhdf")["cells data"])
+    command.ok("order", "a.vtkhdf", "-o", "b.vtkhdf", "--vertices", "scrambled", "--elements", "scrambled")
+    assert list(by_vtk(tmp_path / "b.vtkhdf")["cells data"]) == before != sorted(before)
+    command.ok("order", "b.vtkhdf", "-o", "c.vtu", "--vertices", "original", "--elements", "original")
+    command.ok("order", "c.vtu", "-o", "d.vtkhdf", "--vertices", "original", "--elements", "original")
+    assert list(by_vtk(tmp_path / "d.vtkhdf")["cells data"]) == before
+
+
 def change(path, work):
     with h5py.File(path, "a") as file:
         work(file["VTKHDF"])

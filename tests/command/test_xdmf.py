@@ -192,6 +192,23 @@ def test_identity_keeps_fenicsx_files_as_they_are(command, tmp_path):
         old.visititems(same)
 
 
+def test_groups_that_record_the_order_of_links_keep_it(command, tmp_path):
+    points, tetrahedra, _ = box(2)
+    names = ["zeta", "an array with a long name", "mu", "alpha", "another array with a long name"]
+    with h5py.File(tmp_path / "a.h5", "w", track_order=True) as file:
+        group = file.create_group("values", track_order=True)
+        for name in names:
+            group[name] = points[:, 0]
+        file["points"], file["cells"] = points, tetrahedra
+    data = "".join(attribute(name, "Node", item("a.h5", f"/values/{name}", [len(points)])) for name in sorted(names))
+    (tmp_path / "a.xdmf").write_text(xdmf(
+        f'<Grid>{topology("a.h5", "/cells", "Tetrahedron", tetrahedra.shape)}'
+        f'<Geometry GeometryType="XYZ">{item("a.h5", "/points", points.shape)}</Geometry>{data}</Grid>'))
+    order(command, tmp_path / "a.xdmf", tmp_path / "b.xdmf")
+    with h5py.File(tmp_path / "b.h5") as file:
+        assert list(file["/"]) == ["values", "points", "cells"] and list(file["values"]) == names
+
+
 def test_labels_of_fenicsx_reach_other_formats(command, tmp_path):
     points, tetrahedra, triangles = box(2)
     tagged = numpy.arange(len(tetrahedra))

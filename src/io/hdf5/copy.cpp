@@ -35,33 +35,27 @@ void copy_attribute(hid_t from, const char* name, hid_t to) {
   if (varies) H5Dvlen_reclaim(memory.id(), space.id(), H5P_DEFAULT, bytes.data());
 }
 
-/// Returns HDF5's flags for how a group records the order of links.
-unsigned order_flags(hid_t group) {
+/// Returns whether a group records the order in which its links were made.
+bool records_order(hid_t group) {
   const Handle creation(H5Gget_create_plist(group), H5Pclose);
   unsigned flags = 0;
-  return H5Pget_link_creation_order(creation.id(), &flags) < 0 ? 0 : flags;
-}
-
-/// Returns the creation properties for a copy of a group. The copy records the order of links if the group
-/// does. The group's own properties cannot be used: they hold the addresses of its links in the old file.
-Handle creation_of_copy(hid_t group) {
-  Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-  if (const unsigned flags = order_flags(group); flags != 0) H5Pset_link_creation_order(creation.id(), flags);
-  return creation;
+  return H5Pget_link_creation_order(creation.id(), &flags) >= 0 && (flags & H5P_CRT_ORDER_TRACKED) != 0;
 }
 
 /// See copy_without_values.
 class CopyWithoutValues {
  public:
-  CopyWithoutValues(const std::set<std::string>& paths, hid_t target) : paths_(paths), target_(target) {}
+  CopyWithoutValues(const std::set<std::string>& paths, hid_t target, H5_iter_order_t order)
+      : paths_(paths), target_(target), order_(order) {}
 
   void copy_group(hid_t from, hid_t to, const std::string& path) {
     if (!copy_attributes(from, to)) damaged_ = path;
     H5O_info_t group;
     H5Oget_info(from, &group);
     first_paths_.emplace(group.addr, path.empty() ? "/" : path);
-    const bool by_creation = (order_flags(from) & H5P_CRT_ORDER_INDEXED) != 0;
-    for (const std::string& name : names_in(from, by_creation ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME))
+    const bool by_creation = records_order(from);
+    for (const std::string& name :
+         names_in(from, by_creation ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME, by_creation ? order_ : H5_ITER_INC))
       copy_link(from, to, name, fmt::format("{}/{}", path, name));
   }
 
@@ -91,7 +85,7 @@ class CopyWithoutValues {
       (void)empty_copy(dataset.id(), to, name.c_str(), space.id());
     } else if (is_around_listed) {
       const Handle old_group(H5Gopen2(from, name.c_str(), H5P_DEFAULT), H5Gclose);
-      const Handle creation = creation_of_copy(old_group.id());
+      const Handle creation = creation_of_copy(old_group.id(), H5P_GROUP_CREATE);
       const Handle new_group(H5Gcreate2(to, name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose);
       copy_group(old_group.id(), new_group.id(), path);
       return;
@@ -123,11 +117,23 @@ class CopyWithoutValues {
 
   const std::set<std::string>& paths_;
   hid_t target_;
+  H5_iter_order_t order_;
   std::string damaged_;
   std::map<haddr_t, std::string> first_paths_;  // path of each object in the copy, by address in the old file
 };
 
 }  // namespace
+
+void keep_order_of_links(const Handle& creation) {
+  H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  H5Pset_link_phase_change(creation.id(), 0, 0);  // not in the group's header, whose parts the library moves
+}
+
+Handle creation_of_copy(hid_t group, hid_t kind) {
+  Handle creation(H5Pcreate(kind), H5Pclose);
+  if (records_order(group)) keep_order_of_links(creation);
+  return creation;
+}
 
 bool copy_attributes(hid_t from, hid_t to) {
   if (H5Aexists(from, "\x01") < 0) return false;
@@ -152,10 +158,11 @@ Handle empty_copy(hid_t dataset, hid_t target, const char* name, hid_t space) {
   return copy;
 }
 
-std::string copy_without_values(hid_t file, hid_t copy, const std::set<std::string>& paths) {
+std::string copy_without_values(hid_t file, hid_t copy, const std::set<std::string>& paths,
+                                H5_iter_order_t order) {
   const Handle from(H5Gopen2(file, "/", H5P_DEFAULT), H5Gclose);
   const Handle to(H5Gopen2(copy, "/", H5P_DEFAULT), H5Gclose);
-  CopyWithoutValues work(paths, copy);
+  CopyWithoutValues work(paths, copy, order);
   work.copy_group(from.id(), to.id(), "");
   return work.damaged();
 }

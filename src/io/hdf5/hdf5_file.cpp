@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <new>
 
 namespace meshorder::hdf5 {
@@ -117,13 +118,21 @@ File File::change(const std::filesystem::path& path, std::string name) {
                  "is the disk full?");
 }
 
-File File::in_memory(std::string_view bytes, std::string name) {
+File File::make(const std::filesystem::path& path, std::string_view bytes, std::string name) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(bytes.data(), std::ssize(bytes));
+  file.close();
+  if (!file) throw InputError(name, "cannot be written", "is the disk full?");
+  return change(path, std::move(name));
+}
+
+File File::in_memory(std::string_view bytes, std::string name, hid_t creation) {
   const Session session;
   const Handle access = memory_access(bytes);
   // the library treats two files with the same name as one file
   static std::uint64_t number = 0;
   const std::string label = fmt::format("meshorder-memory-{}", number++);
-  return made_of(bytes.empty() ? H5Fcreate(label.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id())
+  return made_of(bytes.empty() ? H5Fcreate(label.c_str(), H5F_ACC_TRUNC, creation, access.id())
                                : H5Fopen(label.c_str(), H5F_ACC_RDWR, access.id()),
                  std::move(name), "open", "it may be damaged or cut short");
 }
@@ -192,21 +201,42 @@ bool File::has(const std::string& path) const {
   return open_object(path).is_open();
 }
 
-std::vector<std::string> File::names(const std::string& group) const {
+std::vector<std::string> File::names(const std::string& group, H5_iter_order_t order) const {
   const Session session;
   const Handle object = open_object(group);
   if (!object.is_open() || H5Iget_type(object.id()) != H5I_GROUP) return {};
-  return names_in(object.id());
+  return names_in(object.id(), H5_INDEX_NAME, order);
 }
 
 void File::make_group(const std::string& path, LinkOrder order) {
   const Session session;
   if (has(path)) return;
+  const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  if (order == LinkOrder::made) keep_order_of_links(creation);
+  make_group(path, creation);
+}
+
+void File::make_list(const std::string& path, std::span<const std::string> names) {
+  constexpr std::size_t kPerLink = 40;  // bytes, besides the name, which may get a number
+  constexpr std::size_t kForAttributes = 2048;
+  constexpr std::size_t kMost = std::size_t{32} << 10;
+  const Session session;
+  std::size_t bytes = kForAttributes;
+  for (const std::string& name : names) bytes += name.size() + kPerLink;
+  const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  if (!names.empty() && bytes <= kMost) {
+    const auto count = static_cast<unsigned>(names.size());
+    // all links are in the group's header, which has room for them
+    H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+    H5Pset_link_phase_change(creation.id(), count, 0);
+    H5Pset_est_link_info(creation.id(), count, static_cast<unsigned>(bytes / names.size()));
+  }
+  make_group(path, creation);
+}
+
+void File::make_group(const std::string& path, const Handle& creation) {
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links.id(), 1);
-  const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-  if (order == LinkOrder::made)
-    H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
   const Handle group(H5Gcreate2(file_.id(), path.c_str(), links.id(), creation.id(), H5P_DEFAULT), H5Gclose);
   if (!group.is_open()) {
     throw InputError(name_, fmt::format("the group '{}' cannot be written ({})", path, last_cause()),
@@ -229,10 +259,11 @@ void File::remove(const std::string& path) {
   H5Ldelete(group.id(), name.c_str(), H5P_DEFAULT);
 }
 
-std::string File::without_values(const std::set<std::string>& paths) const {
+std::string File::without_values(const std::set<std::string>& paths, H5_iter_order_t order) const {
   const Session session;
-  const File copy = in_memory({}, name_);
-  const std::string damaged = copy_without_values(file_.id(), copy.file_.id(), paths);
+  const Handle root = open_object("/");
+  const File copy = in_memory({}, name_, creation_of_copy(root.id(), H5P_FILE_CREATE).id());
+  const std::string damaged = copy_without_values(file_.id(), copy.file_.id(), paths, order);
   if (!damaged.empty()) {
     throw InputError(name_, fmt::format("the attributes of the group '{}' cannot be read", damaged),
                      "the file may be damaged");

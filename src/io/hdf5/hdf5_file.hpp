@@ -45,8 +45,11 @@ class File {
   static File open(const std::filesystem::path& path, std::string name);
   /// Opens a file on disk to change it. `name` is for messages.
   static File change(const std::filesystem::path& path, std::string name);
-  /// Opens a copy of a file's bytes in memory to change it. Makes an empty file if there are no bytes.
-  static File in_memory(std::string_view bytes, std::string name);
+  /// Makes a file on disk from its bytes, and opens it to change it. `name` is for messages.
+  static File make(const std::filesystem::path& path, std::string_view bytes, std::string name);
+  /// Opens a copy of a file's bytes in memory to change it. Makes an empty file, with the properties
+  /// `creation`, if there are no bytes.
+  static File in_memory(std::string_view bytes, std::string name, hid_t creation = H5P_DEFAULT);
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   /// Returns the library's handle, for work that the functions below do not do; only within a `Session`.
@@ -72,8 +75,10 @@ class File {
 
   /// Returns whether there is a group or a dataset of that path.
   [[nodiscard]] bool has(const std::string& path) const;
-  /// Returns the names in a group, ascending; empty if there is no such group.
-  [[nodiscard]] std::vector<std::string> names(const std::string& group) const;
+  /// Returns the names in a group, ascending or as the library lists them (H5_ITER_NATIVE); empty if there is
+  /// no such group.
+  [[nodiscard]] std::vector<std::string> names(const std::string& group,
+                                               H5_iter_order_t order = H5_ITER_INC) const;
   /// Returns the texts of a dataset. Its rows are texts of any length, or texts of one length, at most 1,024
   /// bytes. Cuts all texts at the first zero byte; removes the blanks at the end of texts of one length.
   [[nodiscard]] std::vector<std::string> read_texts(const std::string& path) const;
@@ -106,10 +111,13 @@ class File {
   /// Allocates room in the file for the values of a dataset that has no room yet. Writes only the first
   /// value, as zero.
   void give_room(const std::string& path);
-  /// Order of the links in a group that `make_group` makes: by creation or by name. `make_group` makes a
+  /// Order of the links in a group that `make_group` makes: by name or by creation. `make_group` makes a
   /// group, and its parents, unless the group exists.
-  enum class LinkOrder : std::uint8_t { made, names };
-  void make_group(const std::string& path, LinkOrder order = LinkOrder::made);
+  enum class LinkOrder : std::uint8_t { names, made };
+  void make_group(const std::string& path, LinkOrder order = LinkOrder::names);
+  /// Makes a group that will get links with these names. If they fit into 32 KiB, the group lists its links
+  /// in the order in which they are made, also to programs that do not sort them.
+  void make_list(const std::string& path, std::span<const std::string> names);
   /// Sets an attribute of a group or a dataset. A single whole number keeps the number type of the old
   /// attribute.
   void set_attribute(const std::string& path, const std::string& name, std::int64_t value);
@@ -124,8 +132,10 @@ class File {
   /// Returns the bytes of a copy of this file in which the datasets at `paths` keep their types, attributes,
   /// chunks and filters, but have no values. A path that ends in "/" is the path of a group that will get a
   /// new member. If several of the paths lead to one dataset or group, each leads to a dataset or group of
-  /// its own in the copy. Everything else is copied.
-  [[nodiscard]] std::string without_values(const std::set<std::string>& paths) const;
+  /// its own in the copy. Everything else is copied. Groups that record the order of links keep it; `order`:
+  /// H5_ITER_NATIVE for formats whose library lists links unsorted.
+  [[nodiscard]] std::string without_values(const std::set<std::string>& paths,
+                                           H5_iter_order_t order = H5_ITER_INC) const;
   /// Returns the bytes of a file in memory.
   [[nodiscard]] std::string bytes() const;
   /// Writes all buffers and closes the file. Throws InputError if that fails.
@@ -137,6 +147,7 @@ class File {
   /// Returns an unused path beside this path.
   [[nodiscard]] std::string free_path(const std::string& path) const;
   File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
+  void make_group(const std::string& path, const Handle& creation);
   [[nodiscard]] Handle open_dataset(const std::string& path) const;
   [[nodiscard]] Handle open_object(const std::string& path) const;
   [[nodiscard]] Handle open_dataset_if_there(const std::string& path) const;

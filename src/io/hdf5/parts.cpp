@@ -49,20 +49,18 @@ bool has_values_elsewhere(hid_t dataset) {
 
 void forget_times(const Handle& creation) { H5Pset_obj_track_times(creation.id(), false); }
 
-std::vector<std::string> names_in(hid_t group, H5_index_t index) {
+std::vector<std::string> names_in(hid_t group, H5_index_t index, H5_iter_order_t order) {
   std::vector<std::pair<std::int64_t, std::string>> links;
   Visitor<H5L_info_t> visitor([&](hid_t /*group*/, const char* name, const H5L_info_t& info) {
-    links.emplace_back(info.corder, name);
+    links.emplace_back(index == H5_INDEX_NAME ? 0 : info.corder, name);
   });
-  H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, decltype(visitor)::visit, &visitor);
+  H5Literate(group, order == H5_ITER_NATIVE ? index : H5_INDEX_NAME, H5_ITER_NATIVE, nullptr,
+             decltype(visitor)::visit, &visitor);
   visitor.rethrow();
-  if (index == H5_INDEX_NAME) {
-    for (auto& [order, name] : links) order = 0;
-  }
-  std::sort(links.begin(), links.end());
+  if (order != H5_ITER_NATIVE) std::sort(links.begin(), links.end());
   std::vector<std::string> names;
   names.reserve(links.size());
-  for (auto& [order, name] : links) names.push_back(std::move(name));
+  for (auto& link : links) names.push_back(std::move(link.second));
   return names;
 }
 

@@ -138,7 +138,7 @@ class FamilyWriter {
     if (layout.is_made) {
       families.resize(item_count(mesh, association_), 0);
     } else {
-      writing_.placed.insert(find_array(mesh, layout.families_array, association_));
+      writing_.placed.insert(label_array(mesh, association_, layout.families_array));
       families = numbers_in(mesh, layout.families_array, association_);
     }
     of_item_.reserve(families.size());
@@ -252,11 +252,13 @@ class FamilyWriter {
     remember({number, sorted});
     hdf5::File& file = writing_.file;
     const std::string root = writing_.layout.families_path(association_);
-    std::string name(utf8_prefix(fmt::format("FAM_{}_{}", number, fmt::join(groups, "_")), kLongestName));
+    // the library lists the families of files before version 3.2 by name, and others as made
+    std::string name(utf8_prefix(fmt::format("FAM_{:07}_{}", number, fmt::join(groups, "_")), kLongestName));
     std::replace(name.begin(), name.end(), '/', '_');
     for (int k = 2; file.has(fmt::format("{}/{}", root, name)); ++k)
-      name = fmt::format("FAM_{}_{}", number, k);
+      name = fmt::format("FAM_{:07}_{}", number, k);
     const std::string path = root + "/" + name;
+    file.make_group(root, hdf5::File::LinkOrder::made);
     file.make_group(path + "/GRO");
     file.set_attribute(path, "NUM", number);
     file.set_attribute(path + "/GRO", "NBR", std::int64_t{std::ssize(groups)});

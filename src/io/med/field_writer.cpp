@@ -302,7 +302,7 @@ class FieldWriter {
     const std::string path = "/CHA/" + name;
     const ValueType type = type_of(steps);
     hdf5::File& file = writing_.file;
-    file.make_group(path);
+    file.make_group(path, hdf5::File::LinkOrder::made);
     file.set_attribute(path, "MAI", writing_.layout.mesh);
     file.set_attribute(path, "NCO", std::int64_t{first.components});
     file.set_attribute(path, "NOM", component_names(first));

@@ -470,7 +470,7 @@ Mesh read_all(const FilePath& path, Notes& notes) {
         layout.families_path(Association::vertices), layout.families_path(Association::cells)}) {
     changing.insert(group + "/");
   }
-  layout.file = std::make_shared<const std::string>(reading.file.without_values(changing));
+  layout.file = std::make_shared<const std::string>(reading.file.without_values(changing, H5_ITER_NATIVE));
   reading.mesh.format_metadata = reading.layout;
   return std::move(reading.mesh);
 }

@@ -110,7 +110,7 @@ class VtkHdfReader {
     const std::string group = data_group(association);
     read_roles(association);
     const std::int64_t rows = association == Association::vertices ? all_.points : all_.cells;
-    return std::ranges::all_of(file_.names(group), [&](const std::string& name) {
+    return std::ranges::all_of(file_.names(group, H5_ITER_NATIVE), [&](const std::string& name) {
       const std::string path = path_in(group, name);
       if (!file_.number_type(path)) return false;
       const hdf5::DatasetInfo info = file_.info(path);
@@ -352,7 +352,7 @@ class VtkHdfReader {
 
   void read_fields() {
     const std::string group = path_of("FieldData");
-    for (const std::string& name : file_.names(group)) {
+    for (const std::string& name : file_.names(group, H5_ITER_NATIVE)) {
       std::optional<DataArray> field = read_array(group, name);
       if (!field) continue;
       const std::int64_t components =
@@ -379,7 +379,7 @@ class VtkHdfReader {
     const std::string group = data_group(association);
     read_roles(association);
     const std::int64_t rows = association == Association::vertices ? all_.points : all_.cells;
-    for (const std::string& name : file_.names(group)) {
+    for (const std::string& name : file_.names(group, H5_ITER_NATIVE)) {
       std::optional<DataArray> array = read_array(group, name);
       if (!array) continue;
       check_count(path_in(group, name), row_count(*array), association, rows);

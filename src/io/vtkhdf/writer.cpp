@@ -12,7 +12,6 @@
 
 #include <array>
 #include <cstdint>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <span>
@@ -25,16 +24,27 @@
 namespace meshorder::vtkhdf {
 namespace {
 
+/// Names of the arrays in each group. VTK lists them as HDF5 does, unsorted.
+using Lists = std::map<std::string, std::vector<std::string>>;
+
+/// Returns lists without the names of arrays on points and cells.
+Lists lists_of(const std::vector<DataArray>& fields) {
+  std::vector<std::string> names;
+  for (const DataArray& field : fields) names.push_back(field.name);
+  return {{data_group(Association::vertices), {}},
+          {data_group(Association::cells), {}},
+          {fmt::format("{}/FieldData", kRoot), std::move(names)}};
+}
+
 /// Returns the bytes of a file without datasets.
-std::string empty_file() {
+std::string empty_file(const Lists& lists) {
   hdf5::File file = hdf5::File::in_memory({}, "");
   const std::string root(kRoot);
-  file.make_group(root, hdf5::File::LinkOrder::names);
+  file.make_group(root);
   constexpr std::array<std::int64_t, 2> kVersion{1, 0};
   file.set_attribute(root, "Version", kVersion);
   file.set_attribute(root, "Type", std::string(kType));
-  for (const char* const group : {"PointData", "CellData", "FieldData"})
-    file.make_group(fmt::format("{}/{}", kRoot, group), hdf5::File::LinkOrder::names);
+  for (const auto& [group, names] : lists) file.make_list(group, names);
   return file.bytes();
 }
 
@@ -150,9 +160,12 @@ void write_without_values(const std::filesystem::path& path, const std::string& 
                           const std::vector<Partition>& partitions, FileLayout& layout,
                           const vtk::VtkMetadata& metadata, Notes& notes) {
   const hdf5::Session session;
-  const std::string bytes = empty_file();
-  std::ofstream(path, std::ios::binary).write(bytes.data(), std::ssize(bytes));
-  hdf5::File file = hdf5::File::change(path, name);
+  Lists lists = lists_of(metadata.fields);
+  for (const FilePart& part : layout.parts) {
+    if (part.role == FilePart::Role::data)
+      lists[data_group(part.association)].push_back(layout.names[part.number]);
+  }
+  hdf5::File file = hdf5::File::make(path, empty_file(lists), name);
   write_counts(file, partitions);
   std::map<Association, DistinctNames> names;
   std::map<std::pair<Association, std::string>, std::string> held;  // arrays by their names in the file
@@ -193,7 +206,11 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const hdf5::Session session;
   vtk::WriteContext from(mesh, notes, vtk::NamePlace::hdf5);
   note_lacking(from, notes);
-  hdf5::write_from(path, empty_file(), [&](hdf5::File& file) { VtkHdfWriter(from, file).write(); });
+  Lists lists = lists_of(from.metadata.fields);
+  for (const DataArray* const array : from.arrays) {
+    if (!are_texts(array->values)) lists[data_group(array->association)].push_back(array->name);
+  }
+  hdf5::write_from(path, empty_file(lists), [&](hdf5::File& file) { VtkHdfWriter(from, file).write(); });
 }
 
 }  // namespace meshorder::vtkhdf

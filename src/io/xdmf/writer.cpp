@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <new>
 #include <string_view>
 
@@ -52,9 +51,7 @@ std::string Writer::write_without_values(const std::filesystem::path& data, cons
   Hdf5Output output;
   output.name = new_name(old_name);
   const std::string name = path_.beside(output.name).string();
-  if (!std::ofstream(data, std::ios::binary).write(bytes.data(), std::ssize(bytes)).flush())
-    throw InputError(name, "cannot be written", "the disk may be full");
-  hdf5::File file = hdf5::File::change(data, name);
+  hdf5::File file = hdf5::File::make(data, bytes, name);
   output.file = &file;
   files_.emplace(old_name, std::move(output));
   for (const Field& field : fields_) {
