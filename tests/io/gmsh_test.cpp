@@ -360,6 +360,18 @@ TEST(Gmsh, WritesLabelsThatWereChangedAsData) {
   EXPECT_THAT(written(mesh), HasSubstr("\"label\"\n1\n0\n3\n0\n1\n3\n3 1\n7 2\n9 3\n"));
 }
 
+TEST(Gmsh, WritesItsOwnArraysAsDataIfTheyGotMoreComponents) {
+  for (const std::string_view text : {kGmsh22, kGmsh41}) {
+    Mesh mesh = read_text(text);
+    for (DataArray& array : mesh.data) {
+      if (array.name != "gmsh:geometrical") continue;
+      array.components = 3;
+      array.values = Ints(3 * mesh.cells.shapes.size(), 4);
+    }
+    EXPECT_THAT(written(mesh), HasSubstr("\"gmsh:geometrical\""));
+  }
+}
+
 TEST(Gmsh, NotesSetsAddedToAGmshFile) {
   Mesh mesh = read_text(kGmsh41);
   mesh.sets.push_back({"mine", Association::cells, {0}});

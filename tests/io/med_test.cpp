@@ -103,6 +103,19 @@ TEST(Med, ASetThatChangesGetsAFamilyOfItsOwnAndOthersKeepTheirs) {
   EXPECT_THAT(read.sets, Contains(EntitySet{"new", Association::cells, {2}}));
 }
 
+TEST(Med, WritesFamiliesThatGotMoreComponentsAsAField) {
+  Mesh mesh = through_med(tagged());
+  for (DataArray& array : mesh.data) {
+    if (array.name != kLabel || array.association != Association::cells) continue;
+    array.components = 2;
+    array.values = std::vector<std::int32_t>{1, 2, 3, 4, 5, 6, 7, 8};
+  }
+  const Mesh again = through_med(mesh);
+  const DataArray* const array = find_array(again, kLabel, Association::cells);
+  ASSERT_NE(array, nullptr);
+  EXPECT_EQ(array->components, 2);
+}
+
 TEST(Med, LabelsWithoutSetsBecomeGroups) {
   Mesh mesh = tagged();
   mesh.sets.clear();

@@ -312,8 +312,11 @@ struct WriteContext {
   [[nodiscard]] std::int64_t cell_id(Index c) const { return cell_ids.empty() ? c + 1 : cell_ids[c]; }
 };
 
-/// Returns an array as 32-bit integers, 0 for items without a value; empty if missing or not convertible.
-std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Association association);
+inline constexpr Index kAnyComponents = 0;
+/// Returns an array as 32-bit integers, 0 for items without a value; empty if missing or not convertible, or
+/// if it has other components.
+std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Association association,
+                                      Index components = 1);
 
 /// Returns the values of the array kNodeParameters, or nullptr if it is missing or malformed.
 const std::vector<double>* parameters_of(const Mesh& mesh);
@@ -342,5 +345,7 @@ void write_elements_4(NumberWriter& sink, const WriteContext& output);
 void write_view(NumberWriter& sink, const WriteContext& output, const View& view);
 void write_periodic(NumberWriter& sink, const WriteContext& output);
 void write_ghosts(NumberWriter& sink, const WriteContext& output);
+/// Returns the array kCellGhosts, or nullptr if it is missing or malformed.
+const DataArray* ghosts_of(const Mesh& mesh);
 
 }  // namespace meshorder::gmsh

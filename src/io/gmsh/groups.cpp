@@ -161,9 +161,9 @@ void assign_tags(const Mesh& mesh, Groups& groups) {
 /// first entity of the highest dimension. Adds new entities to `entities`.
 std::vector<std::int32_t> entities_of_nodes(const Mesh& mesh, std::map<Entity, Group>& entities,
                                             WriteContext& output) {
-  std::vector<std::int32_t> kept = integers_of(mesh, kNodeEntity, Association::vertices);
+  std::vector<std::int32_t> kept = integers_of(mesh, kNodeEntity, Association::vertices, 2);
   const DataArray* array = find_array(mesh, kNodeEntity, Association::vertices);
-  bool usable = !kept.empty() && array->components == 2;
+  bool usable = !kept.empty();
   for (std::size_t i = 0; usable && i < kept.size(); i += 2) {
     usable = kept[i] >= 0 && kept[i] <= 3 && kept[i + 1] > 0;
   }

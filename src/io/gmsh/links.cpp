@@ -191,8 +191,15 @@ void read_ghosts(ReadContext& reading, std::string_view section) {
   reading.mesh.data.push_back(std::move(array));
 }
 
+const DataArray* ghosts_of(const Mesh& mesh) {
+  const DataArray* array = find_array(mesh, kCellGhosts, Association::cells);
+  const bool fits =
+      array && array->components >= 2 && std::holds_alternative<std::vector<std::int32_t>>(array->values);
+  return fits ? array : nullptr;
+}
+
 void write_ghosts(NumberWriter& sink, const WriteContext& output) {
-  const DataArray* array = find_array(output.mesh, kCellGhosts, Association::cells);
+  const DataArray* array = ghosts_of(output.mesh);
   const auto* values = array ? std::get_if<std::vector<std::int32_t>>(&array->values) : nullptr;
   const Index rows = values ? row_count(*array) : 0;
   const bool wide = output.layout.has_wide_numbers();

@@ -187,7 +187,7 @@ class TagsOfMesh {
       : labels_(labels_are_tags ? integers_of(mesh, kLabel, Association::cells)
                                 : std::vector<std::int32_t>{}),
         entities_(integers_of(mesh, kCellEntity, Association::cells)),
-        partitions_(integers_of(mesh, kCellPartitions, Association::cells)),
+        partitions_(integers_of(mesh, kCellPartitions, Association::cells, kAnyComponents)),
         counts_(integers_of(mesh, kCellTagCount, Association::cells)),
         width_(partitions_.empty() ? 0 : partitions_.size() / mesh.cells.shapes.size()) {}
 

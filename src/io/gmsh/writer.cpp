@@ -2,6 +2,7 @@
 #include "io/all_formats.hpp"
 #include "io/deck/numbers.hpp"
 #include "io/gmsh/gmsh.hpp"
+#include "io/labels.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
 
@@ -59,9 +60,7 @@ bool is_parametric_2(const GmshMetadata& layout) {
 
 /// Returns whether the mesh still has the arrays that a file of this layout needs.
 bool still_fits(const Mesh& mesh, const GmshMetadata& layout) {
-  const DataArray* entities = find_array(mesh, kNodeEntity, Association::vertices);
-  const bool has_node_entities =
-      entities && entities->components == 2 && !integers_of(mesh, kNodeEntity, Association::vertices).empty();
+  const bool has_node_entities = !integers_of(mesh, kNodeEntity, Association::vertices, 2).empty();
   if (layout.is_version_2()) return !is_parametric_2(layout) || (has_node_entities && parameters_of(mesh));
   return has_node_entities &&
          integers_of(mesh, kCellEntity, Association::cells).size() == mesh.cells.shapes.size();
@@ -70,8 +69,10 @@ bool still_fits(const Mesh& mesh, const GmshMetadata& layout) {
 /// Fills `output` with the ids, entities and tags of a mesh that came from a Gmsh file.
 void take_layout(const GmshMetadata& layout, WriteContext& output, Notes& notes) {
   const Mesh& mesh = output.mesh;
-  const auto place = [&](std::string_view name, Association association) {
-    output.placed.push_back(find_array(mesh, name, association));
+  const auto place = [&](std::string_view name, Association association, Index components = 1) {
+    const DataArray* const array = find_array(mesh, name, association);
+    const bool fits = array && (components == kAnyComponents || array->components == components);
+    if (fits) output.placed.push_back(array);
   };
   constexpr std::int64_t kSmallestRead = 0;
   output.node_ids = usable_ids(mesh.vertex_ids, "vertices", kSmallestRead, notes);
@@ -80,12 +81,12 @@ void take_layout(const GmshMetadata& layout, WriteContext& output, Notes& notes)
   if (layout.is_version_2()) {
     if (!integers_of(mesh, kLabel, Association::cells).empty()) place(kLabel, Association::cells);
     if (layout.is_version_1()) return;
-    place(kCellPartitions, Association::cells);
+    place(kCellPartitions, Association::cells, kAnyComponents);
     place(kCellTagCount, Association::cells);
     if (!is_parametric_2(layout)) return;
-    output.node_entities = integers_of(mesh, kNodeEntity, Association::vertices);
-    place(kNodeEntity, Association::vertices);
-    place(kNodeParameters, Association::vertices);
+    output.node_entities = integers_of(mesh, kNodeEntity, Association::vertices, 2);
+    place(kNodeEntity, Association::vertices, 2);
+    place(kNodeParameters, Association::vertices, 4);
     return;
   }
   output.cell_tags = integers_of(mesh, kCellEntity, Association::cells);
@@ -94,11 +95,11 @@ void take_layout(const GmshMetadata& layout, WriteContext& output, Notes& notes)
     output.cell_dimensions.reserve(mesh.cells.shapes.size());
     for (const Shape shape : mesh.cells.shapes) output.cell_dimensions.push_back(dimension(shape));
   }
-  output.node_entities = integers_of(mesh, kNodeEntity, Association::vertices);
+  output.node_entities = integers_of(mesh, kNodeEntity, Association::vertices, 2);
   place(kCellDimension, Association::cells);
-  place(kNodeEntity, Association::vertices);
-  place(kNodeParameters, Association::vertices);
-  if (layout.has(SectionKind::ghosts)) place(kCellGhosts, Association::cells);
+  place(kNodeEntity, Association::vertices, 2);
+  place(kNodeParameters, Association::vertices, 4);
+  if (layout.has(SectionKind::ghosts) && ghosts_of(mesh)) output.placed.push_back(ghosts_of(mesh));
   // labels that changed after reading differ from the groups of the entities, so they are written as data
   const std::vector<std::int32_t> labels = integers_of(mesh, kLabel, Association::cells);
   if (!labels.empty() && labels == labels_of_entities(mesh, layout)) place(kLabel, Association::cells);
@@ -178,7 +179,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const bool keeps_layout = own && still_fits(mesh, *own);
   GmshMetadata layout = keeps_layout ? *own : GmshMetadata{};
   WriteContext output{mesh, layout, types_of_cells(mesh), {}, {}, {}, {}, {}, {}, NamedParts(mesh)};
-  output.placed.push_back(find_array(mesh, kCellType, Association::cells));
+  output.placed.push_back(label_array(mesh, Association::cells, kCellType));
   if (keeps_layout) {
     refit_views(layout, output.parts, notes);
     take_layout(layout, output, notes);
@@ -241,9 +242,11 @@ const std::vector<double>* parameters_of(const Mesh& mesh) {
   return std::get_if<std::vector<double>>(&array->values);
 }
 
-std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Association association) {
+std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Association association,
+                                      Index components) {
   const DataArray* array = find_array(mesh, name, association);
   if (!array || (!array->is_dense() && array->components != 1)) return {};
+  if (components != kAnyComponents && array->components != components) return {};
   std::vector<std::int32_t> given =
       with_integers(array->values, []<class Number>(const std::vector<Number>& values) {
         const bool fit = std::all_of(values.begin(), values.end(),
