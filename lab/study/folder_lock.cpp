@@ -5,9 +5,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <fstream>
@@ -37,24 +35,16 @@ long holder_of(int descriptor) {
 
 }  // namespace
 
-FolderLock::FolderLock(const std::filesystem::path& folder)
-    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (descriptor_ < 0) return;
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) {
-    held_.emplace(descriptor_);
-    return;
-  }
-  if (errno != EWOULDBLOCK) return;
-  const long process = holder_of(descriptor_);
-  ::close(descriptor_);
+FolderLock::FolderLock(const std::filesystem::path& folder) : descriptor_(folder, O_RDONLY | O_DIRECTORY) {
+  if (!descriptor_.is_open()) return;
+  const int error = descriptor_.try_lock();
+  if (error == 0) held_.emplace(descriptor_.get());
+  if (error != EWOULDBLOCK) return;
+  const long process = holder_of(descriptor_.get());
   throw InputError(folder.string(),
                    process > 0 ? fmt::format("process {} is using the study in this folder", process)
                                : "another process is using the study in this folder",
                    "wait until it has ended, or name another folder");
-}
-
-FolderLock::~FolderLock() {
-  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 }  // namespace meshorder

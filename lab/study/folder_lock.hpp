@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/descriptor.hpp"
 #include "io/stream/folder_locks.hpp"
 
 #include <filesystem>
@@ -14,14 +15,9 @@ class FolderLock {
   /// Throws InputError if another process holds the lock; the error names that process if it is found. If
   /// locking fails for another reason, the folder is not locked.
   explicit FolderLock(const std::filesystem::path& folder);
-  ~FolderLock();
-  FolderLock(const FolderLock&) = delete;
-  FolderLock(FolderLock&&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-  FolderLock& operator=(FolderLock&&) = delete;
 
  private:
-  int descriptor_;
+  Descriptor descriptor_;
   std::optional<HeldFolder> held_;
 };
 

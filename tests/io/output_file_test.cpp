@@ -14,7 +14,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <bit>
@@ -23,8 +25,26 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <iterator>
+#include <set>
 #include <string>
 #include <thread>
+#include <vector>
+
+namespace {
+
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): `flock` has no other input
+int interruptions = 0;  // calls of `flock` that a signal will interrupt
+
+}  // namespace
+
+/// Takes the place of the system's function in this program.
+extern "C" int flock(int descriptor, int operation) noexcept {
+  if (interruptions == 0) return static_cast<int>(::syscall(SYS_flock, descriptor, operation));
+  --interruptions;
+  errno = EINTR;
+  return -1;
+}
 
 namespace meshorder {
 namespace {
@@ -80,6 +100,36 @@ TEST(FolderLocks, LeaveOutFoldersThatThisProcessHolds) {
   const FolderLocks locks({folder.path()});
   EXPECT_FALSE(can_be_locked());
   ::close(opened);
+}
+
+TEST(FolderLocks, AndScratchFoldersHoldAQuarterOfAllDescriptors) {
+  struct rlimit before {};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  struct rlimit low = before;
+  low.rlim_cur = 128;
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &low), 0);
+  const auto open_files = [] { return std::distance(fs::directory_iterator("/proc/self/fd"), {}); };
+  const auto first = open_files();
+  {
+    std::vector<TemporaryFolder> folders(40);
+    std::vector<Scratch> scratches;
+    std::set<fs::path> paths;
+    for (const TemporaryFolder& folder : folders) {
+      scratches.emplace_back(folder.path() / "a.txt");
+      paths.insert(folder.path());
+    }
+    const FolderLocks locks(paths);
+    EXPECT_EQ(open_files() - first, 32);
+  }
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+}
+
+TEST(Descriptor, LocksItsFileAlthoughSignalsInterrupt) {
+  const TemporaryFolder folder;
+  interruptions = 2;
+  const Scratch scratch(folder.path() / "a.txt");
+  EXPECT_EQ(interruptions, 0);
+  EXPECT_EQ(Descriptor(scratch.file("lock"), O_RDWR).try_lock(), EWOULDBLOCK);
 }
 
 TEST(TextRows, AreWrittenInTheirOrder) {

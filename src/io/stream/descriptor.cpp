@@ -4,6 +4,7 @@
 #include <meshorder/error.hpp>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -43,6 +44,13 @@ void Descriptor::begin_sync() const noexcept {
 #endif
 }
 
+int Descriptor::try_lock() const noexcept {
+  int failed = 0;
+  do failed = ::flock(descriptor_, LOCK_EX | LOCK_NB);
+  while (failed != 0 && errno == EINTR);
+  return failed == 0 ? 0 : errno;
+}
+
 int Descriptor::close() noexcept {
   const int descriptor = std::exchange(descriptor_, -1);
   // the descriptor is closed even after EINTR
@@ -50,9 +58,9 @@ int Descriptor::close() noexcept {
 }
 
 std::size_t descriptors_for_locks() noexcept {
-  constexpr rlim_t kMost = 128;
+  constexpr rlim_t kMost = 64;
   struct rlimit files {};
-  return ::getrlimit(RLIMIT_NOFILE, &files) == 0 ? std::min(files.rlim_cur / 4, kMost) : kMost;
+  return ::getrlimit(RLIMIT_NOFILE, &files) == 0 ? std::min(files.rlim_cur / 8, kMost) : kMost;
 }
 
 int sync_folder(const std::filesystem::path& folder) noexcept {

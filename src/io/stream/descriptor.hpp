@@ -9,7 +9,8 @@
 
 namespace meshorder {
 
-/// A file descriptor, which the destructor closes. `write`, `sync` and `close` return 0 or an `errno`.
+/// A file descriptor, which the destructor closes. `write`, `sync`, `try_lock` and `close` return 0 or an
+/// `errno`.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -34,13 +35,17 @@ class Descriptor {
   [[nodiscard]] int sync() const noexcept;
   /// Makes the system begin to put the bytes written so far on the disk; does not wait. Speeds up `sync`.
   void begin_sync() const noexcept;
+  /// Locks the file (`flock`) so that no other process can lock it. Does not wait: returns EWOULDBLOCK if
+  /// another process holds the lock.
+  [[nodiscard]] int try_lock() const noexcept;
   int close() noexcept;
 
  private:
   int descriptor_ = -1;
 };
 
-/// Returns how many descriptors may be held for locks: a quarter of the process's limit, at most 128.
+/// Returns how many descriptors may be held for locks of folders, and as many for locks of scratch folders:
+/// an eighth of the process's limit, at most 64.
 [[nodiscard]] std::size_t descriptors_for_locks() noexcept;
 
 /// Waits until the names in a folder are on the disk. Returns 0 or an `errno`.

@@ -2,7 +2,6 @@
 #include "io/stream/folder_locks.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 
 #include <cerrno>
@@ -21,11 +20,7 @@ constexpr std::chrono::seconds kLongestWait{10};
 constexpr std::chrono::milliseconds kPause{2};
 
 void wait_for_lock(const Descriptor& folder, Clock::time_point last) {
-  while (::flock(folder.get(), LOCK_EX | LOCK_NB) != 0) {
-    if (errno == EINTR) continue;
-    if (errno != EWOULDBLOCK || Clock::now() > last) return;
-    std::this_thread::sleep_for(kPause);
-  }
+  while (folder.try_lock() == EWOULDBLOCK && Clock::now() <= last) std::this_thread::sleep_for(kPause);
 }
 
 /// The folders that `HeldFolder` objects mark.
@@ -67,9 +62,8 @@ FolderLocks::FolderLocks(const std::set<std::filesystem::path>& folders) {
     for (const Identity& identity : held.folders) by_identity.erase(identity);
   }
   const Clock::time_point last = Clock::now() + kLongestWait;
-  const std::size_t most = descriptors_for_locks() / 2;  // scratch folders need locks too
   for (const auto& [identity, folder] : by_identity) {
-    if (locked_.size() >= most) return;
+    if (locked_.size() >= descriptors_for_locks()) return;
     Descriptor opened(folder, O_RDONLY | O_DIRECTORY);
     if (!opened.is_open()) continue;
     wait_for_lock(opened, last);

@@ -9,7 +9,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp is POSIX's
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -95,7 +94,7 @@ bool is_scratch_name(std::string_view name) {
 bool lock_new(const fs::path& folder, Descriptor& lock) {
   lock = Descriptor(folder / kLock, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW, 0600);
   if (!lock.is_open()) return errno != ENOENT;
-  if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
+  if (lock.try_lock() == EWOULDBLOCK) return false;
   struct stat status {};
   return ::fstat(lock.get(), &status) != 0 || status.st_nlink > 0;
 }
@@ -130,7 +129,7 @@ void remove_if_dead(const Descriptor& parent, const std::string& name, bool is_i
   if (!folder.is_open() || ::fstat(folder.get(), &status) != 0 || status.st_uid != ::geteuid()) return;
   const Descriptor lock(::openat(folder.get(), kLock, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (lock.is_open()) {
-    if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) return;
+    if (lock.try_lock() != 0) return;
     for (const std::string& inner : is_inner ? std::vector<std::string>() : scratches_in(folder))
       remove_if_dead(folder, inner, true);
     remove_files_of(folder);
