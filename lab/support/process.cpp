@@ -123,19 +123,18 @@ ChildProcess::ChildProcess(std::filesystem::path program, const std::vector<std:
   std::vector<std::string> words = command_line(program_, arguments);
   const std::vector<char*> argv = pointers_to(words);
   const pid_t parent = ::getpid();
-  id_ = ::fork();
+  stream_ = ::fdopen(sockets[0], "r");
+  if (stream_ != nullptr) id_ = ::fork();
   if (id_ == 0) become(words.front().c_str(), argv.data(), sockets[1], fixed_addresses, parent);
+  const int error = errno;
   ::close(sockets[1]);
-  socket_ = sockets[0];
-  if (id_ > 0) replies_ = ::fdopen(::fcntl(socket_, F_DUPFD_CLOEXEC, 0), "r");
-  if (replies_ != nullptr) return;
-  ::close(socket_);
-  throw InputError(program_.string(), std::string("cannot be started: ") + std::strerror(errno), "try again");
+  if (id_ > 0) return;
+  (void)(stream_ != nullptr ? std::fclose(stream_) : ::close(sockets[0]));
+  throw InputError(program_.string(), std::string("cannot be started: ") + std::strerror(error), "try again");
 }
 
 ChildProcess::~ChildProcess() {
-  std::fclose(replies_);
-  ::close(socket_);
+  std::fclose(stream_);
   if (id_ <= 0) return;
   ::kill(id_, SIGKILL);  // safe: the child owns no files or locks
   int status = 0;
@@ -150,7 +149,7 @@ void ChildProcess::send(std::string_view line) {
 
 void ChildProcess::send_bytes(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
-    const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    const ssize_t sent = ::send(::fileno(stream_), bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;
     if (sent < 0) throw_ended();
     bytes = bytes.subspan(static_cast<std::size_t>(sent));
@@ -159,9 +158,9 @@ void ChildProcess::send_bytes(std::span<const std::byte> bytes) {
 
 void ChildProcess::receive_bytes(std::span<std::byte> bytes) {
   while (!bytes.empty()) {
-    std::clearerr(replies_);
+    std::clearerr(stream_);
     errno = 0;
-    const std::size_t received = std::fread(bytes.data(), 1, bytes.size(), replies_);
+    const std::size_t received = std::fread(bytes.data(), 1, bytes.size(), stream_);
     bytes = bytes.subspan(received);
     // a signal that the parent handles interrupts the wait
     if (!bytes.empty() && errno != EINTR) throw_ended();
@@ -173,9 +172,9 @@ std::string ChildProcess::receive() {
   std::size_t capacity = 0;
   ssize_t length = -1;
   do {  // a signal that the parent handles interrupts the wait
-    std::clearerr(replies_);
+    std::clearerr(stream_);
     errno = 0;
-    length = ::getline(&buffer, &capacity, replies_);
+    length = ::getline(&buffer, &capacity, stream_);
   } while (length < 0 && errno == EINTR);
   const int error = errno;
   std::string line = length > 0 ? std::string(buffer, static_cast<std::size_t>(length)) : std::string();
@@ -187,7 +186,7 @@ std::string ChildProcess::receive() {
 }
 
 void ChildProcess::throw_ended() {
-  ::shutdown(socket_, SHUT_RDWR);  // ends a child that still waits for a line
+  ::shutdown(::fileno(stream_), SHUT_RDWR);  // ends a child that still waits for a line
   int status = -1;
   if (id_ > 0) wait_for(std::exchange(id_, -1), status);
   std::string how = "ended";

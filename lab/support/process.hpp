@@ -47,8 +47,7 @@ class ChildProcess {
 
   std::filesystem::path program_;
   pid_t id_ = -1;
-  int socket_ = -1;
-  std::FILE* replies_ = nullptr;
+  std::FILE* stream_ = nullptr;  // of a socket, which also takes what is sent
 };
 
 /// Returns whether address space randomisation is off.
