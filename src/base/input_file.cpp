@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/input_file.hpp"
 
+#include "base/lfs_pointer.hpp"
 #include "base/memory.hpp"
 #include <meshorder/error.hpp>
 
@@ -141,6 +142,14 @@ void InputFile::require_readable() {
     throw InputError(path_.string(), kind, "give a file");
   }
   if (S_ISREG(status.st_mode)) size_ = static_cast<std::uint64_t>(status.st_size);
+  if (size_ > kLfsPointer.size() && size_ <= kLongestLfsPointer) {
+    std::string beginning(kLfsPointer.size(), '\0');
+    if (::pread(descriptor_, beginning.data(), beginning.size(), 0) == std::ssize(beginning) &&
+        beginning == kLfsPointer) {
+      close();
+      refuse_lfs_pointer(beginning, path_.string());
+    }
+  }
   if (S_ISFIFO(status.st_mode)) wait_for_writer();
 }
 

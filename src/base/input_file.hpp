@@ -19,8 +19,8 @@ std::optional<std::filesystem::path> real_path_below(const std::filesystem::path
 /// descriptions of the machine (/proc, /sys).
 ///
 /// Opening does not wait for long: a pipe that the user named needs a writer within three seconds; other
-/// pipes are refused like devices, sockets and folders. Throws InputError for what is refused, for a file
-/// that is missing or may not be read, and for failures of the disk.
+/// pipes are refused like devices, sockets, folders and pointers of Git LFS. Throws InputError for what is
+/// refused, for a file that is missing or may not be read, and for failures of the disk.
 class InputFile {
  public:
   /// Opens the path that the user gave. Links are followed; a pipe is read to its end.

@@ -64,14 +64,6 @@ bool is_written_to(const FilePath& path, std::chrono::file_clock::time_point sin
   return path.store() == nullptr && !code && last > since - std::chrono::seconds(1);
 }
 
-/// Throws InputError if the file is a pointer of Git LFS.
-void refuse_pointer(const FilePath& path) {
-  constexpr std::string_view kBeginning = "version https://git-lfs.github.com/spec/";
-  if (path.is_file() && !path.is_empty() && path.read_first(kBeginning.size()) == kBeginning)
-    throw InputError(path.string(), "is a pointer of Git LFS, not the mesh",
-                     "get the mesh by `git lfs pull`");
-}
-
 /// Reads a mesh. Tries again if its files do not fit together and their folder has just been written to.
 Mesh read_together(const FilePath& path, const Format& format, Notes& notes) {
   constexpr int kAttempts = 20;
@@ -86,7 +78,6 @@ Mesh read_together(const FilePath& path, const Format& format, Notes& notes) {
     } catch (const NotTogether&) {
       if (attempt == kAttempts || !is_written_to(path, began)) throw;
     } catch (const InputError&) {
-      refuse_pointer(path);
       refuse_other_content(path, format);
       throw;
     }

@@ -239,6 +239,7 @@ def without_ids(path):
         del file["Cell/id"]
 
 
+POINTER = "version https://git-lfs.github.com/spec/v1\noid sha256:01ab\nsize 12345\n"
 FAULTS = {
     "point 390 (counted from 0) has a coordinate that is not finite":
         change_data("Mesh/mesh/geometry", at((390, 1), numpy.nan)),
@@ -246,6 +247,8 @@ FAULTS = {
     "a cell names the point -1": change_data("Mesh/mesh/topology", at((10, 0), -1)),
     "the data file 'a.h5' is missing": lambda path: path.with_suffix(".h5").unlink(),
     "HDF5 cannot open it": lambda path: os.truncate(path.with_suffix(".h5"), os.path.getsize(path.with_suffix(".h5")) // 2),
+    "a.h5: is a pointer of Git LFS": lambda path: path.with_suffix(".h5").write_text(POINTER),
+    "a.xdmf: is a pointer of Git LFS": lambda path: path.write_text(POINTER),
     "the XML is malformed": lambda path: os.truncate(path, os.path.getsize(path) // 2),
     "has 900 values": change_xml('Dimensions="900" Format', 'Dimensions="901" Format'),
     "'/Cell/id' is missing or damaged": without_ids,

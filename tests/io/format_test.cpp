@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/format.hpp"
 
+#include "base/input_file.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/round_trip.hpp"
@@ -14,6 +15,7 @@
 #include <array>
 #include <cstdint>
 #include <numeric>
+#include <sstream>
 
 namespace meshorder {
 namespace {
@@ -154,7 +156,21 @@ TEST(Format, SaysThatAFileIsAPointerOfGitLfs) {
   for (const Format& format : all_formats()) {
     const std::string fault =
         test::read_error(folder.file("pointer" + std::string(format.extensions.front()), text));
-    EXPECT_THAT(fault, HasSubstr("is a pointer of Git LFS, not the mesh; get the mesh by `git lfs pull`"));
+    EXPECT_THAT(fault, HasSubstr("is a pointer of Git LFS, not the file; get the file by `git lfs pull`"));
+  }
+  // the descriptor of a file that is refused is closed
+  const std::filesystem::path pointer = folder.file("mesh.ele", text);
+  for (int k = 0; k < 2000; ++k) EXPECT_THROW((void)InputFile(pointer), InputError);
+  EXPECT_THAT(test::read_error(folder.file("mesh.node", "1 3 0 0\n1 0 0 0\n")),
+              testing::AllOf(HasSubstr("mesh.ele"), HasSubstr("Git LFS")));
+  ReadOptions options;
+  options.format = "OFF";
+  std::istringstream stream(text);
+  try {
+    (void)read_mesh(stream, options);
+    FAIL() << "a pointer was read";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("Git LFS"));
   }
   EXPECT_THAT(test::read_error(folder.file("similar.off", "version https://example.org")),
               Not(HasSubstr("Git LFS")));

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/file_path.hpp"
 
+#include "base/lfs_pointer.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
@@ -145,6 +146,7 @@ std::string FilePath::read() const {
 
 std::string FilePath::read_first(std::size_t most) const {
   std::string bytes = store_ != nullptr ? store_->read(path_) : read_from_disk(*this, most);
+  if (store_ != nullptr) refuse_lfs_pointer(bytes, string());
   if (bytes.size() > most) bytes.resize(most);
   if (bytes.empty()) throw InputError(string(), "is empty", "give a file");
   return bytes;
