@@ -90,7 +90,7 @@ void add_verdict(MeshRecord& record, const Steadiness& steadiness, bool is_matri
                                .order_seconds = ordered->seconds});
   advice.kernels = kernel_advice(advice);
   record.verdict = to_string(advice);
-  record.gain = certain_gain(advice).value_or(0);
+  record.gain = certain_gain(advice).value_or(TimeRatio{0, 0, 0}).ratio;
 }
 
 /// Returns the file's name without its extension, with a number if another mesh has that name.
@@ -129,7 +129,6 @@ std::string add_mesh(Page& page, const std::string& file, const ReportArguments&
   add_verdict(studied.record, studied.steadiness, is_matrix);
   if (const std::string doubt = reason_to_doubt(studied.steadiness); !doubt.empty()) {
     notes.push_back(name + ": " + doubt);
-    if (!studied.record.verdict.empty()) studied.record.verdict += ". But " + doubt;
   }
 
   progress.stage("the surface of " + name, from + 0.9 * (to - from), to);

@@ -28,7 +28,9 @@ constexpr const char* kBand = "band";
 
 /// Returns the time of an order divided by that of the order `band`. Both times are relative to the file's
 /// order: orders that do not fit into memory together are timed in groups that each contain the file's order.
-double of_band(const KernelTimes& times, const KernelTimes& band) { return band.speedup / times.speedup; }
+double of_band(const KernelTimes& times, const KernelTimes& band) {
+  return band.gain.ratio / times.gain.ratio;
+}
 
 /// Returns the name of an order in the table: "hilbert", or "rcm (auto)".
 std::string label(const ComparisonReport& report, std::size_t i) {
@@ -46,36 +48,49 @@ std::string sentence_on(const ComparisonReport& report, const Advice& advice, Wo
 
 constexpr int kBarWidth = 12;
 
-/// A column of the table: each order's factor over the file's own order; then the band's factor, if known.
+/// A column of the table: each order's ratio to the file's own order; then the band's, if known.
 struct Column {
   std::string title;
-  std::vector<double> factors;
-  double best = 0;  ///< largest factor of the orders
+  std::vector<TimeRatio> ratios;
+  double again = 1;  ///< ratio of two times of the file's own order: the noise
+  double best = 0;   ///< largest ratio of the orders
 };
 
 Column column(std::string title, const KernelTable& table,
-              const std::function<double(const OrderTimes&)>& factor_of) {
+              const std::function<TimeRatio(const OrderTimes&)>& ratio_of) {
   Column result{std::move(title), {}};
-  for (const OrderTimes& times : table.orders) result.factors.push_back(factor_of(times));
-  result.best = *std::ranges::max_element(result.factors);
-  result.factors.push_back(factor_of(table.band));
+  for (const OrderTimes& times : table.orders) {
+    result.ratios.push_back(ratio_of(times));
+    result.best = std::max(result.best, result.ratios.back().ratio);
+  }
+  result.ratios.push_back(ratio_of(table.band));
+  result.again = ratio_of(table.again).ratio;
   return result;
+}
+
+/// Returns the geometric mean over the kernels; its interval is the mean of theirs.
+TimeRatio mean_gain(const OrderTimes& times, std::span<const Kernel> kernels) {
+  TimeRatio sums{0, 0, 0};
+  for (const Kernel kernel : kernels) {
+    sums.ratio += std::log(times[kernel].gain.ratio);
+    sums.low += std::log(times[kernel].gain.low);
+    sums.high += std::log(times[kernel].gain.high);
+  }
+  const auto count = static_cast<double>(kernels.size());
+  return {std::exp(sums.ratio / count), std::exp(sums.low / count), std::exp(sums.high / count)};
 }
 
 /// Returns a column for each kernel. For a mesh, a column for the geometric mean of all kernels comes first.
 std::vector<Column> columns_of(const ComparisonReport& comparison, const KernelTable& table) {
   std::vector<Column> columns;
   if (!comparison.is_matrix()) {
-    columns.push_back(column("all", table, [&](const OrderTimes& times) {
-      double sum = 0;
-      for (const Kernel kernel : comparison.kernels_run) sum += std::log(times[kernel].speedup);
-      return std::exp(sum / static_cast<double>(comparison.kernels_run.size()));
-    }));
+    columns.push_back(column(
+        "all", table, [&](const OrderTimes& times) { return mean_gain(times, comparison.kernels_run); }));
   }
   for (const Kernel kernel : comparison.kernels_run) {
     columns.push_back(column(
         std::string(comparison.is_matrix() ? kProduct : kKernelTitles[static_cast<std::size_t>(kernel)]),
-        table, [&](const OrderTimes& times) { return times[kernel].speedup; }));
+        table, [&](const OrderTimes& times) { return times[kernel].gain; }));
   }
   return columns;
 }
@@ -85,9 +100,11 @@ std::vector<Column> counted_columns(const ComparisonReport& comparison) {
   std::vector<Column> columns;
   for (std::size_t k = 0; k < comparison.gpu_layouts.size(); ++k) {
     Column column{"gpu " + std::string(to_string(comparison.gpu_layouts[k])), {}};
-    for (const std::vector<GpuCost>& costs : comparison.gpu)
-      column.factors.push_back(sector_ratio(comparison.gpu.front()[k], costs[k]));
-    column.best = std::ranges::max(column.factors);
+    for (const std::vector<GpuCost>& costs : comparison.gpu) {
+      const double ratio = sector_ratio(comparison.gpu.front()[k], costs[k]);
+      column.ratios.push_back({ratio, ratio, ratio});
+      column.best = std::max(column.best, ratio);
+    }
     columns.push_back(std::move(column));
   }
   return columns;
@@ -103,19 +120,31 @@ void print_speedups(const Console& console, const ComparisonReport& comparison, 
   const auto width = [](const Column& c) { return std::max<std::size_t>(7, c.title.size() + 1); };
   std::string heads = fmt::format("{:<26} {:>8}", "order", "cost");
   for (const Column& c : columns) heads += fmt::format("{:>{}} ", c.title, width(c));
-  console.print("\nHow many times faster than in the file's own order{}, the best marked by *\n{}",
-                on_threads(table.threads), heads);
-  const double longest = std::ranges::max(columns[column].factors);
+  console.print(
+      "\nHow many times faster than in the file's own order{}. *: the best, and orders not told apart from "
+      "it;\n"
+      "=: not told apart from the file's own order\n{}",
+      on_threads(table.threads), heads);
+  const auto cell = [](const TimeRatio& ratio, bool is_own) {
+    return is_own || is_told_apart(ratio) ? fmt::format("{:.2f}", ratio.ratio) : "=";
+  };
+  const double longest = columns[column].best;
   for (std::size_t i = 0; i <= comparison.orders.size(); ++i) {
     const bool is_band = i == comparison.orders.size();
     std::string row = fmt::format("{:<26} {:>8}", is_band ? kBand : label(comparison, i),
                                   is_band || i == 0 ? "-" : duration(comparison.orders[i].seconds));
     for (const Column& c : columns) {
-      const std::string factor = i < c.factors.size() ? fmt::format("{:.2f}", c.factors[i]) : "-";
-      row += fmt::format("{:>{}}{}", factor, width(c), !is_band && c.factors[i] == c.best ? '*' : ' ');
+      const bool is_known = i < c.ratios.size();
+      const bool is_best = is_known && !is_band && c.ratios[i].high >= c.best && (i > 0 || c.best == 1);
+      row +=
+          fmt::format("{:>{}}{}", is_known ? cell(c.ratios[i], i == 0) : "-", width(c), is_best ? '*' : ' ');
     }
-    console.print("{} {}", row, bar(columns[column].factors[i] / longest, kBarWidth));
+    const TimeRatio& shown = columns[column].ratios[i];
+    console.print("{} {}", row, bar((is_told_apart(shown) ? shown.ratio : 1) / longest, kBarWidth));
   }
+  std::string again = fmt::format("{:<26} {:>8}", "the file's own once more", "-");
+  for (const Column& c : columns) again += fmt::format("{:>{}.2f} ", c.again, width(c));
+  console.print("{}", again);
 }
 
 /// Returns the beginning of a row: both methods, or only the first for a matrix, which has no elements.
@@ -228,7 +257,9 @@ void print_kernels(const Console& console, const ComparisonReport& comparison, c
   rows.push_back(row_head(comparison, kBand, kBand));
   const auto cells = [&](std::size_t i, std::size_t k) {
     const KernelTimes& t = (i < table.orders.size() ? table.orders[i] : table.band)[kKernels[k]];
-    return fmt::format("{:>9.3g} {:>6.2f}x {:>7.2f}", t.best_ms, t.speedup,
+    const bool is_stated = i == 0 || is_told_apart(t.gain);
+    return fmt::format("{:>9.3g} {:>7} {:>7.2f}", t.best_ms,
+                       is_stated ? fmt::format("{:.2f}x", t.gain.ratio) : "=",
                        of_band(t, table.band[kKernels[k]]));
   };
   std::vector<std::string> twice;
@@ -246,10 +277,14 @@ nlohmann::ordered_json kernels_json(const OrderTimes& times, const OrderTimes& b
   nlohmann::ordered_json kernels;
   for (const Kernel kernel : run) {
     const KernelTimes& t = times[kernel];
-    kernels[std::string(to_string(kernel))] = {
-        {"milliseconds", t.median_ms}, {"best_milliseconds", t.best_ms},
-        {"samples", t.samples},        {"share", t.share},
-        {"speedup", t.speedup},        {"of_band", of_band(t, band[kernel])}};
+    kernels[std::string(to_string(kernel))] = {{"milliseconds", t.median_ms},
+                                               {"best_milliseconds", t.best_ms},
+                                               {"samples", t.samples},
+                                               {"share", t.share},
+                                               {"speedup", t.gain.ratio},
+                                               {"interval", interval_json(t.gain)},
+                                               {"told_apart", is_told_apart(t.gain)},
+                                               {"of_band", of_band(t, band[kernel])}};
   }
   return kernels;
 }
@@ -330,14 +365,18 @@ nlohmann::ordered_json to_json(const ComparisonReport& comparison) {
   }
   nlohmann::ordered_json band{{"vertices", kBand}, {"edge_span", to_json(comparison.band_span)}};
   add_kernels(band, comparison, [&](const KernelTable& table) -> const OrderTimes& { return table.band; });
+  nlohmann::ordered_json again = nlohmann::ordered_json::object();
+  add_kernels(again, comparison, [&](const KernelTable& table) -> const OrderTimes& { return table.again; });
   const Advice advice = advice_of(comparison);
   const Workload judged = judged_by_kernels(advice, comparison.workload);
-  nlohmann::ordered_json verdict{{"sentence", nullptr}, {"best", nullptr}, {"factor", 1}};
+  nlohmann::ordered_json verdict{
+      {"sentence", nullptr}, {"best", nullptr}, {"factor", 1}, {"reliable", advice.doubt.empty()}};
   if (std::string sentence = sentence_on(comparison, advice, judged); !sentence.empty())
     verdict["sentence"] = std::move(sentence);
   if (const std::optional<std::size_t> best = winner_for(judged, advice)) {
     verdict["best"] = *best + (comparison.auto_keeps ? 2 : 1);
-    verdict["factor"] = factor_for(judged, advice, *best);
+    verdict["factor"] = gain_for(judged, advice, *best).ratio;
+    verdict["interval"] = interval_json(gain_for(judged, advice, *best));
   }
   auto steadiness = nlohmann::ordered_json::array();
   for (const KernelTable& table : comparison.kernels) {
@@ -352,6 +391,7 @@ nlohmann::ordered_json to_json(const ComparisonReport& comparison) {
           {"caches", comparison.caches.level_bytes},
           {"methods", methods},
           {"band", band},
+          {"again", again},
           {"steadiness", steadiness}};
 }
 

@@ -59,7 +59,7 @@ struct InfoArguments : Common {
 constexpr double kMeasureWithin = 3.8;
 /// Seconds until the end of a quick measurement, for meshes of up to `kMaxQuick` simplices and matrices of up
 /// to `kMaxQuickEntries` entries.
-constexpr double kMeasureQuicklyWithin = 0.7;
+constexpr double kMeasureQuicklyWithin = 1.0;
 constexpr Offset kMaxQuick = 250'000;
 constexpr Offset kMaxQuickEntries = 1'000'000;
 /// Bytes of the smallest first-level cache of today's processors.
@@ -114,7 +114,7 @@ std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh
                                 const Stopwatch& since_start) {
   AdviceOptions options;
   options.machine = machine;
-  options.describe = false;
+  options.patterns = false;
   if (arguments.all_threads) options.threads = thread_count();
   if (!arguments.caches.empty()) options.caches = parse_caches(arguments.caches);
   options.graph_seconds = graph_seconds;
@@ -122,6 +122,8 @@ std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh
   options.kernels = arguments.kernels;
   options.predict = by != By::quick_measurement && arguments.kernels == KernelSet::plain &&
                     is_predicted(arguments, simplices) && machine.model.threads == options.threads;
+  options.predict_in_doubt =
+      arguments.kernels == KernelSet::plain && machine.model.threads == options.threads;
   const bool is_measured = by != By::prediction && has_elements(simplices);
   if (!options.predict && !is_measured) return std::nullopt;
   if (by == By::quick_measurement && fits_in_first_cache(graph)) return std::nullopt;
@@ -282,8 +284,11 @@ void print_verdict(const Console& console, const InfoArguments& arguments, const
           ? "nothing to gain: its data fit in a processor's first cache, in any order"
           : "too large to be judged by default; --measure runs the kernels, and --cache this predicts cache "
             "misses and times";
-  console.print("{}: {}", arguments.input, advice ? to_string(*advice) : without_advice);
-  if (advice) print_next(console, *advice, arguments.input);
+  if (!advice) return console.print("{}: {}", arguments.input, without_advice);
+  console.print("{}", arguments.input);
+  console.print("{:<12} {}", "order", grade_in_words(*advice, found.graph.size()));
+  console.print("{:<12} {}", "gain", to_string(*advice));
+  print_next(console, *advice, arguments.input);
 }
 
 /// Prints the verdict, and then the contents of the mesh.
@@ -323,6 +328,7 @@ nlohmann::ordered_json info_json(const InfoArguments& arguments, const Mesh& mes
     result["reuse"] = to_json(*found.reuse, found.caches, kernels_of(mesh));
   }
   result["verdict"] = found.advice ? to_json(*found.advice) : nullptr;
+  result["order"] = found.advice ? grade_json(*found.advice, mesh.vertex_count()) : nullptr;
   if (found.gpu) result["gpu"] = to_json(*found.gpu);
   result.update(attachments(mesh));
   return result;

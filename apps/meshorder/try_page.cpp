@@ -64,7 +64,7 @@ std::string trial_page(const TrialReport& report) {
     return i == 0 ? TimeRatio{1, 1, 1} : report.trials.speedup(i);
   };
   for (std::size_t i = 1; i < report.orders.size(); ++i) {
-    if (!report.orders[i].times.empty() && is_told_apart(speedup_of(i)))
+    if (!report.orders[i].times.empty() && is_reportable(speedup_of(i)))
       longest = std::max(longest, 1 / speedup_of(i).ratio);
   }
   const std::optional<std::size_t> best = report.trials.best();
@@ -79,7 +79,7 @@ std::string trial_page(const TrialReport& report) {
       continue;
     }
     const TimeRatio speedup = speedup_of(i);
-    if (!is_told_apart(speedup)) {
+    if (!is_reportable(speedup)) {
       page += fmt::format("<td class=\"soft\" colspan=\"3\">{} {}<td class=\"soft\">{} runs\n", kNotToldApart,
                           interval_in_words(speedup), order.times.size());
       continue;

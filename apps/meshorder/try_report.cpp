@@ -57,7 +57,7 @@ std::string undecided_in_words(const TrialReport& report, std::size_t best) {
   const TimeRatio speedup = report.trials.speedup(best);
   if (interval_in_words(speedup).empty())
     return fmt::format("undecided: too few runs of {} to say; raise --budget to {:.6g} s", program, budget);
-  if (!is_told_apart(speedup)) {
+  if (!is_reportable(speedup)) {
     return fmt::format(
         "{}: the runs of {} vary too much; {} makes it {}× as fast, and --budget {:.6g} halves this range",
         kNotToldApart, program, report.orders[best].name, interval_in_words(speedup), budget);
@@ -90,7 +90,7 @@ nlohmann::ordered_json order_json(const TrialReport& report, std::size_t number)
   if (order.count >= 0) result["count"] = order.count;
   if (!order.fault.empty()) result["fault"] = order.fault;
   const TimeRatio speedup = number == 0 ? TimeRatio{1, 1, 1} : report.trials.speedup(number);
-  if (!order.times.empty() && is_told_apart(speedup)) {
+  if (!order.times.empty() && is_reportable(speedup)) {
     result["time"] = time_of(report, number);
     result["ratio"] = speedup.ratio;
   }
@@ -117,7 +117,7 @@ std::string verdict_name(const TrialReport& report) {
   }
   const std::optional<std::size_t> best = report.trials.best();
   const TimeRatio speedup = best ? report.trials.speedup(*best) : TimeRatio{};
-  return interval_in_words(speedup).empty() || is_told_apart(speedup) ? "undecided"
+  return interval_in_words(speedup).empty() || is_reportable(speedup) ? "undecided"
                                                                       : std::string(kNotToldApart);
 }
 
@@ -210,7 +210,7 @@ void print_trial(const Console& console, const TrialReport& report) {
   console.print("{:<20} {:>9} {:>7} {:>11} {:>5}{} {:>9}", "order", "time", "ratio", "95 %", "runs",
                 has_counts ? fmt::format(" {:>8}", "count") : "", "memory");
   const auto is_known = [&](std::size_t i) {
-    return !report.orders[i].times.empty() && (i == 0 || is_told_apart(report.trials.speedup(i)));
+    return !report.orders[i].times.empty() && (i == 0 || is_reportable(report.trials.speedup(i)));
   };
   double longest = 0;
   for (std::size_t i = 0; i < report.orders.size(); ++i) {

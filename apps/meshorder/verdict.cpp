@@ -4,6 +4,7 @@
 #include "payoff/advice.hpp"
 #include "payoff/kernel_bench.hpp"
 #include "payoff/machine_choice.hpp"
+#include "payoff/paired_trials.hpp"
 #include "reuse_report.hpp"
 #include "wording.hpp"
 
@@ -21,11 +22,9 @@ std::string methods_of(const Candidate& candidate, bool is_matrix) {
   return is_matrix ? candidate.vertices.name : candidate.vertices.name + "/" + candidate.elements.name;
 }
 
-/// Returns "4.10×", or "–" if a time is unknown.
-std::string factor_cell(const std::optional<KernelMilliseconds>& as_is,
-                        const std::optional<KernelMilliseconds>& ordered, std::size_t kernel) {
-  if (!as_is || !ordered || (*ordered)[kernel] <= 0) return "–";
-  return fmt::format("{:.2f}×", (*as_is)[kernel] / (*ordered)[kernel]);
+/// Returns "1.34×", or "not told apart".
+std::string factor_cell(const TimeRatio& gain) {
+  return is_told_apart(gain) ? fmt::format("{:.2f}×", gain.ratio) : std::string(kNotToldApart);
 }
 
 nlohmann::ordered_json milliseconds_json(const std::optional<KernelMilliseconds>& milliseconds,
@@ -56,23 +55,24 @@ constexpr std::string_view kCommand = "meshorder order";
 
 void print_line_for(const Console& console, const Candidate& candidate, bool is_matrix,
                     const std::string& mesh) {
-  console.print("to order it: {} {} -o {}{}", kCommand, in_shell(mesh), in_shell(ordered_name(mesh)),
+  console.print("{:<12} {} {} -o {}{}", "to order it", kCommand, in_shell(mesh), in_shell(ordered_name(mesh)),
                 command_for(candidate, is_matrix).substr(kCommand.size()));
 }
 
 void print_next(const Console& console, const Advice& advice, const std::string& mesh) {
+  const Candidate& first = advice.candidates.front();
+  const bool moves = first.vertices.name != "original" || first.elements.name != "original";
   if (const std::optional<std::size_t> candidate = advised(advice)) {
     print_line_for(console, advice.candidates[*candidate], advice.is_matrix, mesh);
-    return;
+  } else if (moves) {
+    print_line_for(console, first, advice.is_matrix, mesh);
   }
-  const Candidate& first = advice.candidates.front();
-  if (first.vertices.name == "original" && first.elements.name == "original") return;
-  console.print("`{}` still moves it: neighbours come nearer, but these kernels run no faster", kCommand);
 }
 
 void print_times(const Console& console, const Advice& advice) {
   const bool predicted = advice.as_is.costs.predicted.has_value();
-  const bool measured = advice.as_is.costs.measured.has_value();
+  const bool measured = advice.as_is.costs.measured && advice.doubt.empty();
+  if (!predicted && !measured) return;
   console.print("\n{}, and how many times faster {} in another,\n{}",
                 advice.is_matrix
                     ? "Products: time in the file's order"
@@ -82,15 +82,15 @@ void print_times(const Console& console, const Advice& advice) {
                          : "predicted for " + advice.machine);
   std::string header = fmt::format("{:<14}{:>10}", "", "as it is");
   for (const Candidate& candidate : advice.candidates)
-    header += fmt::format("{:>24}", methods_of(candidate, advice.is_matrix));
+    header += fmt::format("{:>32}", methods_of(candidate, advice.is_matrix));
   console.print("{}", header);
   for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
     std::string row = fmt::format("{:<14}{:>10}", advice.is_matrix ? kProduct : kKernelTitles[k],
-                                  duration(1e-3 * advice.as_is.costs.best_known()[k]));
+                                  duration(1e-3 * known_ms(advice, k)));
     for (const Candidate& candidate : advice.candidates) {
-      const std::string of_model = factor_cell(advice.as_is.costs.predicted, candidate.costs.predicted, k);
-      const std::string of_clock = factor_cell(advice.as_is.costs.measured, candidate.costs.measured, k);
-      row += fmt::format("{:>24}", predicted && measured ? fmt::format("{} ({})", of_clock, of_model)
+      const std::string of_model = factor_cell(predicted_gain(advice, candidate, k));
+      const std::string of_clock = factor_cell(measured_gain(advice, candidate, k));
+      row += fmt::format("{:>32}", predicted && measured ? fmt::format("{} ({})", of_clock, of_model)
                                    : measured            ? of_clock
                                                          : of_model);
     }
@@ -108,15 +108,29 @@ void print_times(const Console& console, const Advice& advice) {
   }
 }
 
+nlohmann::ordered_json grade_json(const Advice& advice, Index vertices) {
+  const Quality& ordered = advice.candidates.front().spans;
+  return {{"grade", to_string(grade_of(advice.as_is.spans, ordered, vertices))},
+          {"mean_span", advice.as_is.spans.mean_span},
+          {"ordered", ordered.mean_span},
+          {"random", (vertices + 1) / 3.0}};
+}
+
+nlohmann::ordered_json interval_json(const TimeRatio& ratio) {
+  return std::isinf(ratio.high) ? nlohmann::ordered_json(nullptr)
+                                : nlohmann::ordered_json{ratio.low, ratio.high};
+}
+
 nlohmann::ordered_json to_json(const Advice& advice) {
   nlohmann::ordered_json kernels;
   nlohmann::ordered_json time_step;
   const std::size_t count = kernels_of(advice).size();
   for (std::size_t k = 0; k < count; ++k) {
     const KernelAdvice& of_kernel = advice.kernels[k];
-    const bool gains = of_kernel.factor > 1;
+    const bool gains = of_kernel.gain.ratio > 1;
     kernels[std::string(to_string(kKernels[k]))] = {
-        {"factor", of_kernel.factor},
+        {"factor", gains ? nlohmann::ordered_json(of_kernel.gain.ratio) : nullptr},
+        {"interval", gains ? interval_json(of_kernel.gain) : nullptr},
         {"order", gains ? nlohmann::ordered_json(of_kernel.candidate) : nullptr},
         {"runs_to_pay", gains ? nlohmann::ordered_json(of_kernel.runs_to_pay) : nullptr}};
     time_step[std::string(to_string(kKernels[k]))] = runs_in_time_step(advice, k);
@@ -134,7 +148,11 @@ nlohmann::ordered_json to_json(const Advice& advice) {
     orders.push_back(order);
   }
   return {{"sentence", to_string(advice)},
-          {"by", advice.as_is.costs.measured ? "measurement" : "prediction"},
+          {"by", advice.as_is.costs.measured && advice.doubt.empty() ? "measurement"
+                 : advice.as_is.costs.predicted                      ? "prediction"
+                                                                     : "nothing"},
+          {"reliable", advice.doubt.empty()},
+          {"doubt", or_null(advice.doubt)},
           {"machine", or_null(advice.machine)},
           {"kernel_set", to_string(advice.kernel_set)},
           {"threads", advice.threads},

@@ -14,6 +14,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -54,15 +55,31 @@ MESHORDER_API KernelSet parse_kernels(std::string_view name);
 /// Milliseconds of one run of each kernel, in a series of runs.
 using KernelMilliseconds = std::array<double, kKernels.size()>;
 
+/// A time in the present order divided by the time in another, with the interval that holds the true ratio in
+/// 95 of 100 measurements. Predicted ratios have the error of predictions instead.
+struct TimeRatio {
+  double ratio = 1;
+  double low = 0;
+  double high = std::numeric_limits<double>::infinity();
+};
+
+/// Largest `high / low` of a ratio that is stated.
+inline constexpr double kWidestStated = 1.6;
+
+/// Returns whether a ratio may be stated: the interval is narrow and does not hold 1. Otherwise the two times
+/// are "not told apart". Commands, sentences, tables and pages all state ratios by this rule.
+[[nodiscard]] constexpr bool is_told_apart(const TimeRatio& ratio) {
+  return (ratio.low > 1 || ratio.high < 1) && ratio.high <= kWidestStated * ratio.low;
+}
+
 /// Times of the kernels in one order.
 struct OrderCosts {
   /// From reuse distances and a cost model (docs/prediction.md). Compare predicted times only with each
   /// other: they are times on `Advice::machine`.
   std::optional<KernelMilliseconds> predicted = {};
   std::optional<KernelMilliseconds> measured = {};  ///< the best of interleaved rounds
-
-  /// Returns the measured times, else the predicted ones; one of them must be set.
-  [[nodiscard]] const KernelMilliseconds& best_known() const { return measured ? *measured : *predicted; }
+  /// Set with `measured`: how many times faster each kernel ran than in the present order, round by round.
+  std::optional<std::array<TimeRatio, kKernels.size()>> gains = {};
 };
 
 /// Tiles along each side of `Candidate::pattern`; fewer if there are fewer vertices.
@@ -82,7 +99,8 @@ struct Candidate {
 /// The best candidate for one kernel.
 struct KernelAdvice {
   std::size_t candidate = 0;  ///< index in `Advice::candidates` of the kernel's fastest candidate
-  double factor = 1;          ///< present time / time in that candidate's order; 1 if nothing is gained
+  /// Present time / time in that candidate's order; {1, 1, 1} if no candidate is told apart as faster.
+  TimeRatio gain = {1, 1, 1};
   double runs_to_pay = 0;  ///< runs after which the saved time equals `order_seconds`; 0 if nothing is gained
 };
 
@@ -91,8 +109,9 @@ struct Advice {
   Candidate as_is = {};                    ///< the order that the mesh has
   std::vector<Candidate> candidates = {};  ///< as `PayoffOptions::methods` lists them
   std::array<KernelAdvice, kKernels.size()> kernels = {};
-  /// A sentence: why not to trust the measured times (the machine was busy or throttled). Empty if they are
-  /// reliable, or if nothing was measured.
+  /// Why not to trust the measured times: "this machine is too busy to time kernels: 75 % used by others".
+  /// Then the advice rests on predictions or, without them, names no gain. Empty if the times are reliable,
+  /// or if nothing was measured.
   std::string doubt = {};
   /// The machine of the predicted times: "this machine, calibrated 2026-11-22", a machine's name, or
   /// "this machine's caches at the costs of zen3"; empty if nothing was predicted.
@@ -108,8 +127,8 @@ struct Advice {
 };
 
 /// Returns the verdict in one English sentence: which kernel loses most in the present order, which order
-/// makes it faster, and after how many runs that order has saved its own cost; or that nothing is
-/// gained.
+/// makes it faster, and after how many runs of the kernel that order has saved its own cost; or that nothing
+/// is gained, or that the gain is not known.
 [[nodiscard]] MESHORDER_API std::string to_string(const Advice& advice);
 
 /// Options of `advise` and `compare`.
@@ -138,8 +157,7 @@ struct PayoffOptions {
 /// @param mesh     n vertices with points, m cells with types, at least one of them a line, surface or volume
 /// @param options  see `PayoffOptions`
 /// @return the kernels' times in the present order and in every candidate, and the best candidate for each
-///         kernel. Times count as equal if they differ by less than `Advice::floor`, or by less than 5 %. For
-///         times predicted from shipped costs, the 5 % become 10 %, for products 25 %
+///         kernel, if it is told apart (`is_told_apart`)
 /// @throws as `order_mesh`; InvalidArgument also for a mesh without such cells, unknown types and machines, a
 ///         negative budget, `Workload::gpu`, neither `predict` nor `measure`, `predict` with tuned kernels,
 ///         and `predict` with `all_threads` if the machine's costs on that number of threads are not known

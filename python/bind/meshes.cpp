@@ -93,7 +93,8 @@ nb::tuple advise_mesh(const Mesh& mesh, const PayoffOptions& options) {
   nb::dict best_of;
   for (const Kernel kernel : kernels) {
     const KernelAdvice& best = advice.kernels[static_cast<std::size_t>(kernel)];
-    best_of[text(to_string(kernel))] = nb::make_tuple(best.candidate, best.factor, best.runs_to_pay);
+    best_of[text(to_string(kernel))] =
+        nb::make_tuple(best.candidate, best.gain.ratio, best.gain.low, best.gain.high, best.runs_to_pay);
   }
   return nb::make_tuple(to_string(advice), described(advice.as_is, kernels), candidates, best_of,
                         advice.doubt, advice.machine, advice.threads);

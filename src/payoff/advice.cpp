@@ -63,8 +63,12 @@ std::vector<KernelMilliseconds> predictions(const std::vector<KernelInput>& orde
   return result;
 }
 
-TimingOptions for_seconds(double seconds) {
-  return {.budget_seconds = std::max(0.0, seconds), .min_rounds = 2, .sample_seconds = 0.01};
+/// Returns options for short samples: many rounds give narrow intervals.
+TimingOptions for_seconds(double seconds, int threads) {
+  return {.budget_seconds = std::max(0.0, seconds),
+          .min_rounds = 3,
+          .sample_seconds = 0.004,
+          .processor_time = threads == 1};
 }
 
 /// Times all orders together, in rounds that end within `options.measure_within` seconds on the stopwatch.
@@ -77,7 +81,8 @@ Timings measured(const std::vector<KernelInput>& orders, const AdviceOptions& op
   std::vector<KernelBench*> pointers;
   pointers.reserve(benches.size());
   for (const auto& bench : benches) pointers.push_back(bench.get());
-  return time_interleaved(pointers, for_seconds(*options.measure_within - stopwatch.seconds()));
+  return time_interleaved(pointers,
+                          for_seconds(*options.measure_within - stopwatch.seconds(), options.threads));
 }
 
 /// Times the orders with the race's timer, for half a second each.
@@ -85,7 +90,7 @@ Timings raced(const std::vector<KernelInput>& orders, const AdviceOptions& optio
   constexpr double kSeconds = 0.5;
   const auto prepare = [&](Index i) { return prepare_kernels(options.kernels, orders[i], options.threads); };
   return options.race_timer(index_size(orders), prepare,
-                            for_seconds(kSeconds * static_cast<double>(orders.size())));
+                            for_seconds(kSeconds * static_cast<double>(orders.size()), options.threads));
 }
 
 /// Returns the options of each order to compute. Without `options.methods`, the orders are `auto` for all
@@ -112,23 +117,16 @@ bool are_one(const Candidate& a, const Candidate& b) {
   return a.vertices.name == b.vertices.name && a.elements.name == b.elements.name;
 }
 
-/// Returns log(time in an order / time in the mesh's own order), as the mean over the kernels of a workload.
-/// Throws InvalidArgument if the workload has no kernels.
-double cost_for(Workload workload, const Advice& advice, const OrderCosts& costs) {
-  double sum = 0;
-  int kernels = 0;
-  for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
-    if (workload != Workload::all && to_string(workload) != to_string(kKernels[k])) continue;
-    // a mesh of points has no work to do
-    const double as_is = advice.as_is.costs.best_known()[k];
-    if (as_is > 0) sum += std::log(costs.best_known()[k] / as_is);
-    ++kernels;
-  }
-  if (kernels == 0) {
-    throw InvalidArgument(fmt::format("advice: no kernel measures {}", to_string(workload)));
-  }
-  return sum / kernels;
+/// Returns the ratio of two times whose error is at most a factor of `error`.
+TimeRatio with_error(double as_is, double ordered, double error) {
+  // a mesh of points has no work to do
+  if (as_is <= 0 || ordered <= 0) return {1, 1, 1};
+  const double ratio = as_is / ordered;
+  return {ratio, ratio / error, ratio * error};
 }
+
+/// Returns whether measured times decide: they are there, and they are reliable.
+bool by_clock(const Advice& advice) { return advice.as_is.costs.measured && advice.doubt.empty(); }
 
 /// Keeps `most` candidates in their present sequence: the first one and the best of the others.
 void keep_best(Advice& advice, Orders& orders, Workload workload, std::size_t most) {
@@ -136,8 +134,7 @@ void keep_best(Advice& advice, Orders& orders, Workload workload, std::size_t mo
   std::iota(places.begin(), places.end(), 0);
   if (places.size() <= most) return;
   std::stable_sort(places.begin() + 1, places.end(), [&](std::size_t a, std::size_t b) {
-    return cost_for(workload, advice, advice.candidates[a].costs) <
-           cost_for(workload, advice, advice.candidates[b].costs);
+    return gain_for(workload, advice, a).ratio > gain_for(workload, advice, b).ratio;
   });
   places.resize(most);
   std::sort(places.begin(), places.end());
@@ -202,18 +199,27 @@ void add_candidates(Advice& advice, Orders& orders, const Mesh& mesh, const Advi
   }
 }
 
-/// Adds the spans and patterns of all orders.
-void describe(Advice& advice, const Orders& orders) {
+/// Adds the spans of all orders and, if asked for, their patterns.
+void describe(Advice& advice, const Orders& orders, bool with_patterns) {
   std::vector<Candidate> described(orders.all.size());
   take_turns(index_size(orders.all), [&](Index i) {
     const CsrGraph& graph = orders.all[i].graph();
     const Permutation as_ordered = Permutation::identity(graph.size());
     described[i].spans = quality_of(graph, as_ordered);
-    described[i].pattern = pattern_of(graph, as_ordered, kPatternSide);
+    if (with_patterns) described[i].pattern = pattern_of(graph, as_ordered, kPatternSide);
   });
   for_candidates(advice, orders, [&](Candidate& candidate, std::size_t order) {
     candidate.spans = described[order].spans;
     candidate.pattern = described[order].pattern;
+  });
+}
+
+/// Adds the predicted times of all orders.
+void predict(Advice& advice, const Orders& orders, const AdviceOptions& options) {
+  advice.machine = options.machine.in_words();
+  const std::vector<KernelMilliseconds> predicted = predictions(orders.all, options);
+  for_candidates(advice, orders, [&](Candidate& candidate, std::size_t order) {
+    candidate.costs.predicted = predicted[order];
   });
 }
 
@@ -229,37 +235,58 @@ void measure(Advice& advice, const Orders& orders, const AdviceOptions& options,
   }
   for_candidates(advice, orders, [&](Candidate& candidate, std::size_t order) {
     KernelMilliseconds& milliseconds = candidate.costs.measured.emplace();
+    auto& gains = candidate.costs.gains.emplace();
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
       milliseconds[k] = timings.orders[order][kKernels[k]].best_ms;
+      gains[k] = timings.orders[order][kKernels[k]].gain;
     }
   });
 }
 
 }  // namespace
 
-double factor_for(Workload workload, const Advice& advice, std::size_t candidate) {
-  return std::exp(-cost_for(workload, advice, advice.candidates[candidate].costs));
+TimeRatio measured_gain(const Advice& advice, const Candidate& candidate, std::size_t kernel) {
+  if (!by_clock(advice)) return {};
+  if (candidate.costs.gains) return (*candidate.costs.gains)[kernel];
+  return with_error((*advice.as_is.costs.measured)[kernel], (*candidate.costs.measured)[kernel],
+                    same_time(advice, kKernels[kernel]));
+}
+
+TimeRatio predicted_gain(const Advice& advice, const Candidate& candidate, std::size_t kernel) {
+  if (!advice.as_is.costs.predicted) return {};
+  return with_error((*advice.as_is.costs.predicted)[kernel], (*candidate.costs.predicted)[kernel],
+                    same_time(advice, kKernels[kernel]));
+}
+
+TimeRatio gain_of(const Advice& advice, const Candidate& candidate, std::size_t kernel) {
+  return by_clock(advice) ? measured_gain(advice, candidate, kernel)
+                          : predicted_gain(advice, candidate, kernel);
+}
+
+TimeRatio gain_for(Workload workload, const Advice& advice, std::size_t candidate) {
+  TimeRatio sums{0, 0, 0};
+  int kernels = 0;
+  for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
+    if (workload != Workload::all && to_string(workload) != to_string(kKernels[k])) continue;
+    const TimeRatio of_kernel = gain_of(advice, advice.candidates[candidate], k);
+    sums.ratio += std::log(of_kernel.ratio);
+    sums.low += std::log(of_kernel.low);
+    sums.high += std::log(of_kernel.high);
+    ++kernels;
+  }
+  if (kernels == 0) {
+    throw InvalidArgument(fmt::format("advice: no kernel measures {}", to_string(workload)));
+  }
+  return {std::exp(sums.ratio / kernels), std::exp(sums.low / kernels), std::exp(sums.high / kernels)};
 }
 
 std::optional<std::size_t> winner_for(Workload workload, const Advice& advice) {
-  double best = 0;
-  double same = 0;  // Σ log(same_time) over the kernels
-  int kernels = 0;
-  for (const Candidate& candidate : advice.candidates) {
-    best = std::min(best, cost_for(workload, advice, candidate.costs));
-  }
-  for (const Kernel kernel : kernels_of(advice)) {
-    if (workload == Workload::all || to_string(workload) == to_string(kernel)) {
-      same += std::log(same_time(advice, kernel));
-      ++kernels;
-    }
-  }
-  const double nearly_best = best + same / std::max(1, kernels);
-  if (nearly_best >= 0) return std::nullopt;
-  for (std::size_t i = 0;; ++i) {
-    const double cost = cost_for(workload, advice, advice.candidates[i].costs);
-    if (cost == best || (i == 0 && cost <= nearly_best)) return i;
-  }
+  std::vector<TimeRatio> gains;
+  for (std::size_t i = 0; i < advice.candidates.size(); ++i) gains.push_back(gain_for(workload, advice, i));
+  const auto best = std::ranges::max_element(gains, {}, &TimeRatio::ratio);
+  if (best == gains.end() || best->ratio <= 1 || !is_told_apart(*best)) return std::nullopt;
+  const bool first_is_as_fast = is_told_apart(gains.front()) && gains.front().ratio >= best->low;
+  return first_is_as_fast ? 0 : static_cast<std::size_t>(best - gains.begin());
 }
 
 Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options) {
@@ -273,17 +300,12 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   orders.all.emplace_back(mesh, graph);
   advice.is_matrix = orders.all.front().is_matrix();
   add_candidates(advice, orders, mesh, options);
-  if (options.describe) describe(advice, orders);
-  if (options.predict) {
-    advice.machine = options.machine.in_words();
-    const std::vector<KernelMilliseconds> predicted = predictions(orders.all, options);
-    for_candidates(advice, orders, [&](Candidate& candidate, std::size_t order) {
-      candidate.costs.predicted = predicted[order];
-    });
-  }
+  describe(advice, orders, options.patterns);
+  if (options.predict) predict(advice, orders, options);
   if (options.race_of > 0) keep_best(advice, orders, options.ordering.workload, options.race_of);
   advice.floor = options.machine.floor;
   if (measures(options)) measure(advice, orders, options, since_call);
+  if (options.predict_in_doubt && !advice.doubt.empty() && !options.predict) predict(advice, orders, options);
   advice.kernels = kernel_advice(advice);
   return advice;
 }
@@ -299,45 +321,38 @@ int runs_in_time_step(const Advice& advice, std::size_t kernel) {
 
 double same_time(const Advice& advice, Kernel kernel) {
   const double floor = advice.floor[static_cast<std::size_t>(kernel)];
-  const bool of_this_machine = advice.as_is.costs.measured || floor > 0;
+  const bool of_this_machine = by_clock(advice) || floor > 0;
   const double of_another = kernel == Kernel::spmv ? 1.25 : 1.1;
   return std::max(of_this_machine ? 1.05 : of_another, 1 + floor);
 }
 
 std::array<KernelAdvice, kKernels.size()> kernel_advice(const Advice& advice) {
   std::array<KernelAdvice, kKernels.size()> result;
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+  for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
     KernelAdvice& of_kernel = result[k];
-    const double as_is = advice.as_is.costs.best_known()[k];
-    double best = as_is;
     for (std::size_t i = 0; i < advice.candidates.size(); ++i) {
-      const double ms = advice.candidates[i].costs.best_known()[k];
-      if (ms >= best) continue;
-      best = ms;
-      of_kernel.candidate = i;
+      const TimeRatio gain = gain_of(advice, advice.candidates[i], k);
+      if (gain.ratio <= of_kernel.gain.ratio || !is_told_apart(gain)) continue;
+      of_kernel = {i, gain, std::ceil(1e3 * advice.candidates[i].order_seconds / saved_ms(advice, i, k))};
     }
-    if (best <= 0.0 || as_is < same_time(advice, kKernels[k]) * best) continue;
-    of_kernel.factor = as_is / best;
-    of_kernel.runs_to_pay =
-        std::ceil(1e3 * advice.candidates[of_kernel.candidate].order_seconds / (as_is - best));
   }
   return result;
 }
 
-double saved_in_time_step(const Advice& advice, std::size_t candidate) {
-  double saved = 0;
-  for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
-    const double as_is = advice.as_is.costs.best_known()[k];
-    const double ordered = advice.candidates[candidate].costs.best_known()[k];
-    const double same = same_time(advice, kKernels[k]);
-    if (std::max(as_is, ordered) < same * std::min(as_is, ordered)) continue;
-    saved += runs_in_time_step(advice, k) * (as_is - ordered);
-  }
-  return saved;
+double saved_ms(const Advice& advice, std::size_t candidate, std::size_t kernel) {
+  const TimeRatio gain = gain_of(advice, advice.candidates[candidate], kernel);
+  return is_told_apart(gain) ? known_ms(advice, kernel) * (1 - 1 / gain.ratio) : 0;
+}
+
+double known_ms(const Advice& advice, std::size_t kernel) {
+  const OrderCosts& costs = advice.as_is.costs;
+  return by_clock(advice) || !costs.predicted ? (*costs.measured)[kernel] : (*costs.predicted)[kernel];
 }
 
 double steps_to_pay(const Advice& advice, std::size_t candidate) {
-  const double saved = saved_in_time_step(advice, candidate);
+  double saved = 0;
+  for (std::size_t k = 0; k < kernels_of(advice).size(); ++k)
+    saved += runs_in_time_step(advice, k) * saved_ms(advice, candidate, k);
   return saved > 0 ? std::ceil(1e3 * advice.candidates[candidate].order_seconds / saved) : 0;
 }
 

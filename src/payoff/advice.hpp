@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/text.hpp"
 #include "graph/csr_graph.hpp"
 #include "metrics/cache.hpp"
 #include "payoff/access_stream.hpp"
@@ -11,9 +12,12 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace meshorder {
@@ -38,8 +42,9 @@ struct AdviceOptions {
   std::string format = {};   ///< format in which the mesh will be written; empty: `Mesh::format`
   double graph_seconds = 0;  ///< time that building the vertex graph took
   bool predict = true;
-  bool describe = true;         ///< set the spans and the pattern of all candidates
-  bool for_springs_too = true;  ///< add a candidate for springs if `auto` chooses another method for them
+  bool predict_in_doubt = false;  ///< predict if the measured times are unreliable
+  bool patterns = true;           ///< set the patterns of all candidates
+  bool for_springs_too = true;    ///< add a candidate for springs if `auto` chooses another method for them
   std::optional<int> halvings =
       {};  ///< reuse is estimated from 2^-halvings of the lines; unset: `halvings_for`
   /// The reuse in the mesh's own order, if known; computed if unset.
@@ -60,31 +65,63 @@ struct AdviceOptions {
 /// of threads.
 Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options = {});
 
-/// Returns the factor up to which two times of a kernel count as equal. It is 1.05 for measured times and for
-/// predictions by the machine's own calibration. For predictions by the costs of another machine it is 1.1,
-/// and 1.25 for SpMV: measurements did not confirm smaller predicted differences (docs/prediction.md). The
-/// factor is larger if repeated timings of one problem on this machine differ by more.
+/// Returns the factor by which predicted times may be wrong. It is 1.05 for the machine's own calibration.
+/// For the costs of another machine it is 1.1, and 1.25 for SpMV: measurements did not confirm smaller
+/// predicted differences (docs/prediction.md). The factor is larger if repeated timings of one problem on
+/// this machine differ by more. 1.05 also for times that were measured without rounds.
 double same_time(const Advice& advice, Kernel kernel);
 
+/// Returns how many times faster a kernel runs in a candidate's order than in the mesh's own: as measured if
+/// the times are reliable, else as predicted, else a ratio without an interval.
+TimeRatio gain_of(const Advice& advice, const Candidate& candidate, std::size_t kernel);
+
+/// Return the same by one source alone; a ratio without an interval if there are no such times, or if the
+/// measured ones are unreliable.
+TimeRatio measured_gain(const Advice& advice, const Candidate& candidate, std::size_t kernel);
+TimeRatio predicted_gain(const Advice& advice, const Candidate& candidate, std::size_t kernel);
+
+/// How near neighbours are in an order, between `order`'s and random.
+enum class OrderGrade : std::uint8_t { good, fair, poor };
+
+template <>
+struct EnumNames<OrderGrade> {
+  static constexpr std::string_view kind = "grade";
+  static constexpr std::array names{std::pair{OrderGrade::good, "good"}, std::pair{OrderGrade::fair, "fair"},
+                                    std::pair{OrderGrade::poor, "poor"}};
+};
+
+/// Grades an order by the mean logarithm of its spans: from that of a better order on, up to a sixth of the
+/// way to a random order is good, up to a half is fair, and the rest is poor.
+OrderGrade grade_of(const Quality& as_is, const Quality& ordered, Index vertices);
+
+/// Returns "poor: neighbours are 2,662 places apart on average; `meshorder order` makes it 304, random would
+/// be 4,150" about the first candidate.
+std::string grade_in_words(const Advice& advice, Index vertices);
+
 /// Returns the best candidate for each kernel, in the order of kKernels. If there is nothing to gain, as for
-/// a mesh without cells, the factor is 1.
+/// a mesh without cells, the gain is {1, 1, 1}.
 std::array<KernelAdvice, kKernels.size()> kernel_advice(const Advice& advice);
 
-/// Returns the speedup of a candidate over the mesh's own order: that of the workload's kernel or, for all
-/// kernels, the geometric mean.
-double factor_for(Workload workload, const Advice& advice, std::size_t candidate);
+/// Returns the gain of a candidate for a workload: that of its kernel or, for all kernels, the geometric
+/// mean, whose interval is the mean of theirs. Throws InvalidArgument for workloads without kernels, such as
+/// `bandwidth`.
+TimeRatio gain_for(Workload workload, const Advice& advice, std::size_t candidate);
 
 /// Returns the place of the candidate in which the kernels of a workload (one or all) run fastest; nothing if
-/// no candidate is faster than the mesh's own order by more than same_time. The first candidate wins unless
-/// another candidate is faster than it by more than same_time. For all kernels, geometric means are compared.
-/// Throws InvalidArgument for workloads without kernels, such as `bandwidth` and `fill`.
+/// no candidate is told apart from the mesh's own order as faster. The first candidate wins if its ratio lies
+/// in the interval of the best one. Throws as `gain_for`.
 std::optional<std::size_t> winner_for(Workload workload, const Advice& advice);
 
-/// Returns the milliseconds that a candidate saves in each time step (see runs_in_time_step), negative if it
-/// is slower. A kernel whose times differ by no more than same_time adds nothing.
-double saved_in_time_step(const Advice& advice, std::size_t candidate);
+/// Returns the milliseconds of a run in the mesh's own order: as measured if they are reliable or not
+/// predicted.
+double known_ms(const Advice& advice, std::size_t kernel);
 
-/// Returns the time steps after which a candidate has paid for itself, 0 if it never does.
+/// Returns the milliseconds that a run in a candidate's order saves, negative if it is slower; 0 if the two
+/// are not told apart.
+double saved_ms(const Advice& advice, std::size_t candidate, std::size_t kernel);
+
+/// Returns the time steps (see runs_in_time_step) after which a candidate has paid for itself, 0 if it never
+/// does.
 double steps_to_pay(const Advice& advice, std::size_t candidate);
 
 /// Returns the command that gives a mesh the order of a candidate: "meshorder order --for springs". For a
@@ -95,9 +132,12 @@ std::string command_for(const Candidate& candidate, bool is_matrix = false);
 /// gain.
 std::optional<std::size_t> advised(const Advice& advice);
 
-/// Returns the speedup of the kernel that can gain most, in the order that `advised` returns; nothing if
-/// there is nothing to gain or the size of the gain is in doubt.
-std::optional<double> certain_gain(const Advice& advice);
+/// Returns the gain of the kernel that can gain most, in the order that `advised` returns; nothing if no gain
+/// is told apart.
+std::optional<TimeRatio> certain_gain(const Advice& advice);
+
+/// Returns the ends of the interval, such as "1.6 to 1.8", or one number if both are written alike.
+std::string range_in_words(const TimeRatio& ratio);
 
 /// Returns the place in kKernels of the workload's only kernel; kKernels.size() if the workload has all
 /// kernels or none.

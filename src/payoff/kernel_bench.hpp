@@ -2,7 +2,6 @@
 #pragma once
 
 #include "base/point.hpp"
-#include "base/polymorphic.hpp"
 #include "base/text.hpp"
 #include "payoff/kernel_input.hpp"
 #include <meshorder/mesh.hpp>
@@ -48,8 +47,15 @@ std::span<const Kernel> kernels_of(const Mesh& mesh);
 /// cut into simplices, a spring on every edge, and vertices displaced by a smooth function of their rest
 /// position. All orders of a mesh therefore compute the same physics, and no force, strain or matrix entry
 /// is trivial.
-class KernelBench : public Polymorphic {
+class KernelBench {
  public:
+  virtual ~KernelBench() = default;
+
+  /// Returns a copy, in memory of its own.
+  [[nodiscard]] virtual std::unique_ptr<KernelBench> copy() const = 0;
+  /// Becomes a copy of a bench of the same type. Arrays stay where they are if they are large enough.
+  virtual void take(const KernelBench& other) = 0;
+
   /// Returns the kernels that it runs, a prefix of kKernels.
   [[nodiscard]] virtual std::span<const Kernel> kernels() const { return kKernels; }
 
@@ -84,11 +90,26 @@ class KernelBench : public Polymorphic {
   /// thread, 0.02 if two threads compute every fiftieth element.
   [[nodiscard]] virtual double redundancy() const = 0;
 
+ protected:
+  KernelBench() = default;
+  KernelBench(const KernelBench&) = default;
+  KernelBench& operator=(const KernelBench&) = default;
+
  private:
   virtual void compute(Kernel kernel) = 0;
   virtual double compute_stretches(Kernel /*kernel*/) { return 0; }
 
   bool assembled_ = false;
+};
+
+/// The base of benches of one type, which can be copied.
+template <class Bench>
+class CopiedBench : public KernelBench {
+ public:
+  [[nodiscard]] std::unique_ptr<KernelBench> copy() const final {
+    return std::make_unique<Bench>(static_cast<const Bench&>(*this));
+  }
+  void take(const KernelBench& other) final { static_cast<Bench&>(*this) = static_cast<const Bench&>(other); }
 };
 
 /// Prepares the kernels of a mesh (see kernels_of); for a matrix, the product with exactly its entries. Keeps

@@ -5,6 +5,7 @@
 #include "base/memory.hpp"
 #include "base/run_scope.hpp"
 #include "base/stopwatch.hpp"
+#include "payoff/paired_trials.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -125,23 +126,56 @@ void end_plainly_slow(Plans& plans, std::vector<Samples>& samples, std::size_t k
   }
 }
 
-std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options,
-                                        double budget_seconds, SteadinessWatch& watch) {
+/// The samples of all orders, and of the first one once more.
+struct Sampled {
+  std::vector<Samples> orders;
+  Samples again;
+};
+
+/// Runs benches, all of them in the same memory unless they are large.
+class Stage {
+ public:
+  explicit Stage(std::span<KernelBench* const> benches) : benches_(benches) {
+    const auto is_small = [](const KernelBench* bench) { return bench->bytes() <= kMostCopied; };
+    if (!benches.empty() && std::ranges::all_of(benches, is_small)) shared_ = benches.front()->copy();
+  }
+
+  /// Returns the bench of order i, which runs until the next call.
+  KernelBench& enter(std::size_t i) {
+    if (!shared_) return *benches_[i];
+    shared_->take(*benches_[i]);
+    return *shared_;
+  }
+  /// Keeps what order i has computed, such as its matrix.
+  void keep(std::size_t i) {
+    if (shared_) benches_[i]->take(*shared_);
+  }
+
+ private:
+  std::span<KernelBench* const> benches_;
+  std::unique_ptr<KernelBench> shared_;
+};
+
+Sampled sample_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options,
+                           double budget_seconds, SteadinessWatch& watch) {
   const std::size_t orders = benches.size();
   const std::span<const Kernel> kernels =
       benches.empty() ? std::span<const Kernel>() : benches.front()->kernels();
   Plans plans(orders);
-  std::vector<Samples> samples(orders);
+  Sampled sampled{std::vector<Samples>(orders), {}};
+  Stage stage(benches);
   const Stopwatch stopwatch;
   // the last kernels first: the first assembly computes the matrix of the product
   const auto plan_each = [&](const auto& plan) {
     for (std::size_t i = 0; i < orders; ++i) {
+      KernelBench& bench = stage.enter(i);
       for (std::size_t k = kernels.size(); k-- > 0;) {
         poll();
-        if (plans[i][k].repeats > 0) plans[i][k] = plan(*benches[i], kernels[k], plans[i][k]);
+        if (plans[i][k].repeats > 0) plans[i][k] = plan(bench, kernels[k], plans[i][k]);
       }
+      stage.keep(i);
     }
-    end_plainly_slow(plans, samples, kernels.size());
+    end_plainly_slow(plans, sampled.orders, kernels.size());
   };
   if (options.in_stretches) {
     plan_each([&](KernelBench& bench, Kernel kernel, const Plan& /*before*/) {
@@ -151,53 +185,98 @@ std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, c
   plan_each([&](KernelBench& bench, Kernel kernel, const Plan& before) {
     return plan_samples(bench, kernel, !before.has_run(), options);
   });
+  const std::size_t places = orders > 0 ? orders + 1 : 0;
   double round_start = stopwatch.seconds();
   for (int round = 0; round < options.max_rounds; ++round) {
     const double seconds = stopwatch.seconds();
     if (round >= options.min_rounds && seconds + (seconds - round_start) > budget_seconds) break;
     round_start = seconds;
-    for (std::size_t k = 0; k < kernels.size(); ++k) {
+    for (std::size_t place = 0; place < places; ++place) {
+      const std::size_t turn = (place + static_cast<std::size_t>(round)) % places;
+      const std::size_t order = turn % orders;
+      Samples& samples = turn < orders ? sampled.orders[order] : sampled.again;
       watch.tick();
-      for (std::size_t i = 0; i < orders; ++i) {
-        const std::size_t order = (i + static_cast<std::size_t>(round)) % orders;
+      KernelBench& bench = stage.enter(order);
+      for (std::size_t k = 0; k < kernels.size(); ++k) {
         poll();
         const Plan& plan = plans[order][k];
         if (plan.repeats == 0) continue;
-        const RunTime time = round == 0 && plan.of_first_round ? *plan.of_first_round
-                                                               : sample(*benches[order], kernels[k], plan);
+        const bool is_taken = round == 0 && turn < orders && plan.of_first_round;
+        const RunTime time = is_taken ? *plan.of_first_round : sample(bench, kernels[k], plan);
         watch.add_sample(time.elapsed, time.on_thread);
-        samples[order][k].seconds.push_back(time.by(options) / plan.repeats);
+        samples[k].seconds.push_back(time.by(options) / plan.repeats);
       }
     }
   }
-  for (const Samples& of_order : samples) {
-    for (const Kernel kernel : kernels) {
-      const std::vector<double>& taken = of_order[static_cast<std::size_t>(kernel)].seconds;
-      if (taken.size() > 1) watch.add_repeat(repeat_difference(taken));
-    }
-  }
-  return samples;
+  return sampled;
 }
 
-KernelTimes summary(KernelSamples samples, double reference_seconds) {
+/// Returns log(reference / sample) for each round; of orders that were not sampled in the same rounds, that
+/// of their best samples.
+std::vector<double> log_ratios(const std::vector<double>& reference, const std::vector<double>& samples) {
+  std::vector<double> logs;
+  if (reference.size() != samples.size()) {
+    logs.push_back(std::log(*std::ranges::min_element(reference) / *std::ranges::min_element(samples)));
+    return logs;
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) logs.push_back(std::log(reference[i] / samples[i]));
+  return logs;
+}
+
+/// Returns the ratio with its interval, whose ends are moved apart by `noise`, a logarithm.
+TimeRatio ratio_of(const std::vector<double>& logs, const std::vector<double>& control, double noise) {
+  constexpr double kOfOneSample = 1.25;
+  TimeRatio ratio = time_ratio_of(logs, control);
+  if (logs.size() == 1) ratio = {ratio.ratio, ratio.ratio / kOfOneSample, ratio.ratio * kOfOneSample};
+  return {ratio.ratio, ratio.low * std::exp(-noise), ratio.high * std::exp(noise)};
+}
+
+KernelTimes summary(const KernelSamples& samples) {
   KernelTimes times;
   times.samples = static_cast<int>(samples.seconds.size());
   if (samples.seconds.empty()) return times;
-  const double best = *std::ranges::min_element(samples.seconds);
-  times.best_ms = 1e3 * best;
-  times.speedup = best > 0.0 ? reference_seconds / best : 1.0;
-  times.median_ms = 1e3 * median(std::move(samples.seconds));
+  times.best_ms = 1e3 * *std::ranges::min_element(samples.seconds);
+  times.median_ms = 1e3 * median(samples.seconds);
   times.share = samples.share;
   return times;
 }
 
-std::vector<OrderTimes> summaries(std::vector<Samples> samples) {
-  std::vector<OrderTimes> result(samples.size());
+/// Adds the steadiness; of an unreliable measurement, no ratio has an interval.
+Timings judged(Timings timings, const SteadinessWatch& watch) {
+  timings.steadiness = watch.result();
+  if (reason_to_doubt(timings.steadiness).empty()) return timings;
+  for (std::size_t i = 1; i < timings.orders.size(); ++i) {
+    for (KernelTimes& times : timings.orders[i].times) times.gain = {.ratio = times.gain.ratio};
+  }
+  return timings;
+}
+
+/// Returns the times of all orders; adds what the two times of the first one differ by to the watch.
+Timings summaries(const Sampled& sampled, SteadinessWatch& watch) {
+  // times of one problem on a quiet machine differ by up to this share from one process to the next
+  constexpr double kLeastNoise = 0.015;
+  Timings result;
+  result.orders.resize(sampled.orders.size());
   for (const Kernel kernel : kKernels) {
-    if (samples.empty() || of(samples.front(), kernel).seconds.empty()) continue;
-    const double reference = *std::ranges::min_element(of(samples.front(), kernel).seconds);
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      result[i][kernel] = summary(of(samples[i], kernel), reference);
+    const auto k = static_cast<std::size_t>(kernel);
+    if (sampled.orders.empty() || sampled.orders.front()[k].seconds.empty()) continue;
+    const std::vector<double>& reference = sampled.orders.front()[k].seconds;
+    double noise = kLeastNoise;
+    std::vector<double> control;
+    result.again[kernel] = summary(sampled.again[k]);
+    if (!sampled.again[k].seconds.empty()) {
+      control = log_ratios(reference, sampled.again[k].seconds);
+      result.again[kernel].gain = ratio_of(control, {}, kLeastNoise);
+      const double differ = std::abs(std::log(result.again[kernel].gain.ratio));
+      watch.add_repeat(std::expm1(differ));
+      noise = std::max(noise, differ);
+    }
+    for (std::size_t i = 0; i < sampled.orders.size(); ++i) {
+      result.orders[i][kernel] = summary(sampled.orders[i][k]);
+      if (i > 0)
+        result.orders[i][kernel].gain =
+            ratio_of(log_ratios(reference, sampled.orders[i][k].seconds), control, noise);
+    }
   }
   return result;
 }
@@ -206,9 +285,8 @@ std::vector<OrderTimes> summaries(std::vector<Samples> samples) {
 
 Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options) {
   SteadinessWatch watch;
-  std::vector<OrderTimes> orders =
-      summaries(sample_interleaved(benches, options, options.budget_seconds, watch));
-  return {std::move(orders), watch.result()};
+  Timings result = summaries(sample_interleaved(benches, options, options.budget_seconds, watch), watch);
+  return judged(std::move(result), watch);
 }
 
 Timings time_orders(Index orders, const PrepareOrder& prepare, const TimingOptions& options) {
@@ -220,7 +298,7 @@ Timings time_orders(Index orders, const PrepareOrder& prepare, const TimingOptio
   const Index group = static_cast<Index>(std::clamp<std::size_t>(fitting, 2, kMaxIndex)) - 1;
   const Index groups = std::max<Index>(1, (orders - 1 + group - 1) / group);
 
-  std::vector<OrderTimes> result(1);
+  Timings result;
   SteadinessWatch watch;
   Samples of_reference;
   for (Index first = 1; first == 1 || first < orders; first += group) {
@@ -228,21 +306,21 @@ Timings time_orders(Index orders, const PrepareOrder& prepare, const TimingOptio
     for (Index i = first; i < std::min(orders, first + group); ++i) others.push_back(prepare(i));
     std::vector<KernelBench*> benches{reference.get()};
     for (const auto& bench : others) benches.push_back(bench.get());
-    std::vector<Samples> samples =
-        sample_interleaved(benches, options, options.budget_seconds / groups, watch);
+    const Sampled sampled = sample_interleaved(benches, options, options.budget_seconds / groups, watch);
     for (const Kernel kernel : kKernels) {
       KernelSamples& all = of(of_reference, kernel);
-      const KernelSamples& more = of(samples.front(), kernel);
+      const KernelSamples& more = sampled.orders.front()[static_cast<std::size_t>(kernel)];
       all.seconds.insert(all.seconds.end(), more.seconds.begin(), more.seconds.end());
       all.share = std::min(all.share, more.share);
     }
-    const std::vector<OrderTimes> times = summaries(std::move(samples));
-    result.insert(result.end(), times.begin() + 1, times.end());
+    const Timings times = summaries(sampled, watch);
+    if (first == 1)
+      result = times;
+    else
+      result.orders.insert(result.orders.end(), times.orders.begin() + 1, times.orders.end());
   }
-  std::vector<Samples> pooled;
-  pooled.push_back(std::move(of_reference));
-  result.front() = summaries(std::move(pooled)).front();
-  return {std::move(result), watch.result()};
+  for (const Kernel kernel : kKernels) result.orders.front()[kernel] = summary(of(of_reference, kernel));
+  return judged(std::move(result), watch);
 }
 
 }  // namespace meshorder

@@ -11,6 +11,10 @@
 
 namespace meshorder {
 
+/// Largest bytes of a bench that is copied for each sample. The memory of larger ones exceeds the caches, and
+/// is spread over so many pages that their places hardly matter.
+inline constexpr std::size_t kMostCopied = std::size_t{256} << 20;
+
 /// Options for timing kernels.
 struct TimingOptions {
   /// A round begins only if it should end within this time. The time includes the first runs, which plan the
@@ -34,7 +38,9 @@ struct TimingOptions {
 struct KernelTimes {
   double best_ms = 0.0;
   double median_ms = 0.0;
-  double speedup = 1.0;  ///< best_ms of the reference in the same rounds, divided by this best_ms
+  /// Time of the reference / this time, from the pairs of each round, widened by the noise. Of a single
+  /// sample, the interval is a quarter to both sides.
+  TimeRatio gain = {1, 1, 1};
   int samples = 0;
   double share = 1;  ///< share of the elements that ran; if below 1, the times are the measured ones / share
 };
@@ -52,6 +58,7 @@ struct OrderTimes {
 /// The times of several orders, and how far they can be trusted.
 struct Timings {
   std::vector<OrderTimes> orders;
+  OrderTimes again;  ///< the first order, timed once more: what its times differ by is the noise
   Steadiness steadiness;
 };
 
@@ -60,11 +67,13 @@ using PrepareOrder = std::function<std::unique_ptr<KernelBench>(Index)>;
 
 /// Times every kernel of the prepared orders, which must all run the same kernels, in interleaved rounds, so
 /// that changes of the machine's speed affect all orders alike. A round takes a sample of every kernel in
-/// every order, kernel by kernel; the next round begins with the next order. The first runs of a sample find
-/// another order's data in the caches and are not counted; their number is `runs_to_settle`. If a run takes
-/// at least five times `sample_seconds`, all runs count, and the last run of the plan is the sample of the
-/// first round. If a kernel takes 0.1 s or more in an order, and three times as long as in the fastest order,
-/// the run that planned its samples is its only sample there. With `in_stretches` this run is one by
+/// every order, and in the first one twice; the next round begins with the next order. All orders run in the
+/// same memory, since the place of an array alone can change a time by a half; benches of more than
+/// `kMostCopied` bytes run in their own. The first runs of a sample find another order's data in the caches
+/// and are not counted; their number is `runs_to_settle`. If a run takes at least five times
+/// `sample_seconds`, all runs count, and the last run of the plan is the sample of the first round. If a
+/// kernel takes 0.1 s or more in an order, and three times as long as in the fastest order, the run that
+/// planned its samples is its only sample there. With `in_stretches` this run is one by
 /// `KernelBench::run_stretches`, if that takes 0.05 s or more. The first bench is the reference of the
 /// speedups.
 Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options = {});

@@ -98,6 +98,7 @@ KernelTable timed(const MeshComparison& comparison, const KernelInput& input, co
   };
   Timings timings = time_orders(orders + 1, prepare, options);
   table.orders = std::move(timings.orders);
+  table.again = timings.again;
   table.steadiness = timings.steadiness;
   table.band = table.orders.back();
   table.orders.pop_back();
@@ -173,9 +174,10 @@ Advice advice_of(const MeshComparison& comparison) {
                         .workload = comparison.workload,
                         .order_seconds = c.seconds};
     KernelMilliseconds& milliseconds = candidate.costs.measured.emplace();
+    auto& gains = candidate.costs.gains.emplace();
     for (const Kernel kernel : comparison.kernels_run) {
-      milliseconds[static_cast<std::size_t>(kernel)] =
-          table.orders.front()[kernel].best_ms / table.orders[i][kernel].speedup;
+      milliseconds[static_cast<std::size_t>(kernel)] = table.orders[i][kernel].best_ms;
+      gains[static_cast<std::size_t>(kernel)] = table.orders[i][kernel].gain;
     }
     return candidate;
   };

@@ -77,7 +77,7 @@ double student_quantile(double tail, int degrees) {
   return (low + high) / 2;
 }
 
-bool is_told_apart(const TimeRatio& speedup) {
+bool is_reportable(const TimeRatio& speedup) {
   const bool is_tie = speedup.low > 1 / (1 + kTie) && speedup.high < 1 + kTie;
   return speedup.low > 1 || speedup.high < 1 || is_tie;
 }

@@ -1,8 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <meshorder/payoff.hpp>
+
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -16,14 +17,6 @@ inline constexpr double kTie = 0.015;
 /// The words for two orders whose times do not differ by more than the noise.
 inline constexpr std::string_view kNotToldApart = "not told apart";
 
-/// The speed of a program in an order, relative to the file's own order. The interval contains the true ratio
-/// in 95 of 100 trials, even though a trial checks the interval repeatedly.
-struct TimeRatio {
-  double ratio = 1;
-  double low = 0;
-  double high = std::numeric_limits<double>::infinity();
-};
-
 /// The result of a trial of an order against the file's own.
 enum class TrialVerdict { undecided, tie, faster, slower };
 
@@ -33,7 +26,7 @@ double student_quantile(double tail, int degrees);
 
 /// Returns whether a ratio may be reported: its interval does not contain 1, or is so narrow that the orders
 /// are ties. Else they are "not told apart", and only the interval may be reported.
-[[nodiscard]] bool is_told_apart(const TimeRatio& speedup);
+[[nodiscard]] bool is_reportable(const TimeRatio& speedup);
 
 /// Returns the speedup from logarithms of the ratios of paired times (own order / this order): their mean
 /// without the largest and the smallest fifth (Yuen, "The two-sample trimmed t for unequal population

@@ -11,7 +11,7 @@ namespace meshorder {
 /// The plain kernels: a matrix of one number per entry, with 32-bit columns; elements one after another;
 /// edges sorted by their smaller end. Results have 1 double per vertex for spmv, 3 per vertex for forces, 1
 /// per entry for assembly.
-class PlainBench final : public KernelBench {
+class PlainBench final : public CopiedBench<PlainBench> {
  public:
   explicit PlainBench(const KernelInput& input);
 

@@ -10,7 +10,7 @@ namespace meshorder {
 
 /// The product with a matrix of exactly this pattern, in the storage of `PlainBench` (one number per entry).
 /// All values of the matrix are 1, and entry i of the vector is i + 1; times do not depend on these numbers.
-class ProductBench final : public KernelBench {
+class ProductBench final : public CopiedBench<ProductBench> {
  public:
   explicit ProductBench(EntryPattern pattern);
 

@@ -24,7 +24,9 @@ std::vector<MeshMethods> contenders(const Mesh& mesh) {
   return result;
 }
 
-bool is_predicted(const Race& race) { return !race.advice.as_is.costs.measured; }
+bool is_predicted(const Race& race) {
+  return !race.advice.as_is.costs.measured || !race.advice.doubt.empty();
+}
 
 std::string reason_for(const Race& race) {
   const std::size_t timed = race.factors.size();
@@ -73,7 +75,7 @@ Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options) {
                           .race_of = kInRace,
                           .race_timer = options.timer});
   for (std::size_t i = 0; i < result.advice.candidates.size(); ++i) {
-    result.factors.push_back(factor_for(workload, result.advice, i));
+    result.factors.push_back(gain_for(workload, result.advice, i).ratio);
   }
   result.winner = winner_for(workload, result.advice);
   result.reason = reason_for(result);

@@ -24,7 +24,7 @@ struct RaceOptions {
 /// The result of timing or predicting several orders of a mesh.
 struct Race {
   Advice advice;                      ///< candidates: the orders that were timed, or the best predicted ones
-  std::vector<double> factors;        ///< as `factor_for` returns them, by candidate
+  std::vector<double> factors;        ///< ratios of `gain_for`, by candidate
   std::optional<std::size_t> winner;  ///< place of a candidate; nothing: the mesh's own order
   std::string reason;                 ///< why the winner won, a sentence
 

@@ -36,32 +36,13 @@ std::uint64_t fixed_arithmetic() {
 
 std::string reason_to_doubt(const Steadiness& steadiness) {
   std::vector<std::string> signs;
-  if (steadiness.waiting > kMostWaiting) {
-    signs.push_back(
-        fmt::format("other programs used the processor for {:.0f} % of the time", 100 * steadiness.waiting));
-  }
-  if (steadiness.pace > kMostPace) {
-    signs.push_back(fmt::format("its speed changes: the same arithmetic took {:.0f} % longer than at best",
-                                100 * steadiness.pace));
-  }
-  if (steadiness.repeat > kMostRepeat) {
-    signs.push_back(
-        fmt::format("two timings of the same kernel and order differ by {:.0f} %", 100 * steadiness.repeat));
-  }
-  if (signs.empty()) return {};
-  return "these times are unreliable: the machine is busy or throttled (" + join(signs) +
-         "); measure again when it is idle";
-}
-
-double repeat_difference(const std::vector<double>& samples) {
-  if (samples.size() < 2) return 0;
-  double even = samples[0];
-  double odd = samples[1];
-  for (std::size_t i = 2; i < samples.size(); ++i) {
-    double& best = i % 2 == 0 ? even : odd;
-    best = std::min(best, samples[i]);
-  }
-  return std::max(even, odd) / std::min(even, odd) - 1;
+  if (steadiness.waiting > kMostWaiting)
+    signs.push_back(fmt::format("{:.0f} % used by others", 100 * steadiness.waiting));
+  if (steadiness.pace > kMostPace)
+    signs.push_back(fmt::format("its speed changes by {:.0f} %", 100 * steadiness.pace));
+  if (steadiness.repeat > kMostRepeat)
+    signs.push_back(fmt::format("the same order timed twice differs by {:.0f} %", 100 * steadiness.repeat));
+  return signs.empty() ? "" : "this machine is too busy to time kernels: " + join(signs);
 }
 
 int runs_to_settle(const std::vector<double>& seconds) {

@@ -11,19 +11,15 @@ namespace meshorder {
 struct Steadiness {
   double waiting = 0;  ///< share of the time in which the timed thread did not run
   double pace = 0;     ///< median / least time of a fixed piece of arithmetic, minus 1
-  double repeat = 0;   ///< median relative difference between two timings of one kernel in one order
+  double repeat = 0;   ///< median relative difference between two timings of one kernel in the first order
 
   bool operator==(const Steadiness&) const = default;
 };
 
-/// Returns a sentence that says why the times are unreliable; empty if they are reliable. They are reliable
-/// if the timed thread waited for at most 5 % of the time, arithmetic took at most 10 % longer than at best,
-/// and repeated timings differ by at most 5 % (from this difference on, measured orders count as different).
+/// Returns why the times are unreliable, "this machine is too busy to time kernels: 75 % used by others";
+/// empty if they are reliable: the timed thread waited for at most 5 % of the time, arithmetic took at most
+/// 10 % longer than at best, and two timings of one order differ by at most 5 %.
 std::string reason_to_doubt(const Steadiness& steadiness);
-
-/// Returns the relative difference between the best even-numbered and the best odd-numbered sample; 0 for
-/// fewer than two samples.
-double repeat_difference(const std::vector<double>& samples);
 
 /// Returns after how many successive runs, at least 1, a kernel has settled in the caches: the next run takes
 /// at most 5 % longer than the fastest of `seconds`. 1 if no run does. Up to ten are needed if the last cache
@@ -41,7 +37,7 @@ class SteadinessWatch {
   void tick();
   /// Adds the elapsed seconds of a sample and the processor time of its thread.
   void add_sample(double seconds, double thread_seconds);
-  /// Adds a `repeat_difference`.
+  /// Adds the relative difference between two timings of one kernel in one order.
   void add_repeat(double difference) { repeats_.push_back(difference); }
 
   [[nodiscard]] Steadiness result() const;

@@ -11,7 +11,7 @@ namespace meshorder {
 
 /// The simulators' own kernels: elastic elements and springs in batches, a matrix of 3×3 blocks. Results have
 /// 3 doubles a vertex for spmv, 4 for forces (see padded_positions), 9 a block for assembly.
-class TunedBench final : public KernelBench {
+class TunedBench final : public CopiedBench<TunedBench> {
  public:
   explicit TunedBench(const KernelInput& input);
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 namespace meshorder {
@@ -38,46 +39,31 @@ std::string times(double count, const char* what) {
 
 /// Returns the place of the kernel that could gain most over the mesh's own order.
 std::size_t worst(const std::array<KernelAdvice, kKernels.size()>& kernels) {
-  const auto less = [](const KernelAdvice& a, const KernelAdvice& b) { return a.factor < b.factor; };
+  const auto less = [](const KernelAdvice& a, const KernelAdvice& b) { return a.gain.ratio < b.gain.ratio; };
   return static_cast<std::size_t>(std::max_element(kernels.begin(), kernels.end(), less) - kernels.begin());
 }
 
-/// Returns a clause on the kernels that a candidate slows down: "; it makes the springs kernel 1.2× slower".
+/// Returns a clause on the kernels that a candidate slows down: "; it makes the springs kernel 1.1 to 1.2
+/// times slower".
 std::string losses(const Advice& advice, std::size_t candidate) {
   std::string words;
-  const KernelMilliseconds& ordered = advice.candidates[candidate].costs.best_known();
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    const double as_is = advice.as_is.costs.best_known()[k];
-    if (as_is <= 0 || ordered[k] < same_time(advice, kKernels[k]) * as_is) continue;
-    words += fmt::format("{} the {} kernel {:.2g}× slower", words.empty() ? "; it makes" : " and",
-                         kKernelTitles[k], ordered[k] / as_is);
+  for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
+    const TimeRatio gain = gain_of(advice, advice.candidates[candidate], k);
+    if (gain.ratio >= 1 || !is_told_apart(gain)) continue;
+    const TimeRatio loss{1 / gain.ratio, 1 / gain.high, 1 / gain.low};
+    words += fmt::format("{} the {} kernel {} times slower", words.empty() ? "; it makes" : " and",
+                         kKernelTitles[k], range_in_words(loss));
   }
   return words;
 }
 
-/// Returns whether the size of a kernel's gain is in doubt: the times are unreliable, and the gain is less
-/// than four times the difference of repeated timings, taken as at least 5 %.
-bool is_vague(const Advice& advice, std::size_t kernel, double factor) {
-  constexpr double kBeyondNoise = 4;
-  constexpr double kLeastNoise = 0.05;
-  return !advice.doubt.empty() && factor - 1 < kBeyondNoise * std::max(kLeastNoise, advice.floor[kernel]);
-}
+/// Returns whether measured times decide.
+bool is_measured(const Advice& advice) { return advice.as_is.costs.measured && advice.doubt.empty(); }
 
-/// Returns whether the mean gain of a workload's kernels is in doubt by the noise of one of them.
-bool is_vague(const Advice& advice, Workload workload, double factor) {
-  for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
-    const bool counts = workload == Workload::all || k == kernel_of(workload);
-    if (counts && is_vague(advice, k, factor)) return true;
-  }
-  return false;
-}
-
-/// Returns the number of runs of a kernel after which a candidate that makes it faster has paid for itself:
-/// "17 runs of the springs kernel".
-std::string runs_to_pay(const Advice& advice, const Candidate& candidate, std::size_t kernel) {
-  const double saved_ms = advice.as_is.costs.best_known()[kernel] - candidate.costs.best_known()[kernel];
-  return fmt::format("{} of the {} kernel", times(std::ceil(1e3 * candidate.order_seconds / saved_ms), "run"),
-                     kKernelTitles[kernel]);
+/// Returns "measured here on 2 threads" or "predicted for zen3".
+std::string source_of(const Advice& advice) {
+  return is_measured(advice) ? "measured here" + on_threads(advice.threads)
+                             : "predicted for " + advice.machine;
 }
 
 /// Returns "the springs kernel runs" or "the kernels run"; for a matrix "products are".
@@ -87,53 +73,79 @@ std::string runs_of(const Advice& advice, Workload workload) {
   return k < kKernels.size() ? fmt::format("the {} kernel runs", kKernelTitles[k]) : "the kernels run";
 }
 
-/// Returns the verdict if the size of the gain is in doubt. It says only which order is faster. `slower` is a
-/// text such as "products take longer", `than` a text such as "they could".
-std::string in_doubt(const std::string& slower, const std::string& on, const char* than,
-                     const std::string& command) {
-  return fmt::format(
-      "as it is, {}{} than {} (measured here while the machine was busy: the amount is uncertain); `{}` "
-      "gives a faster order",
-      slower, on, than, command);
+/// Returns why no order is told apart from the present one: nothing is to be gained or, if gains of more than
+/// `kSmall` are possible, the gain is not known. `most` is the largest end of the intervals.
+std::string no_gain(const Advice& advice, double most, const std::string& runs) {
+  constexpr double kSmall = 1.3;
+  if (!is_measured(advice) && !advice.as_is.costs.predicted) return "the gain is not known: " + advice.doubt;
+  const std::string source = source_of(advice);
+  if (most > kSmall) {
+    return std::isinf(most)
+               ? "the gain is not known: the times were not told apart"
+               : fmt::format("the gain is not known: up to {:.1f} times is possible ({})", most, source);
+  }
+  return fmt::format("nothing to gain: {} more than {:.2f} times as fast in another order ({})", runs, most,
+                     source);
 }
 
-std::string of_products(const Advice& advice) {
-  const bool measured = advice.as_is.costs.measured.has_value();
-  const std::string on = measured ? on_threads(advice.threads) : "";
-  const std::string of_machine = advice.machine.empty() ? "" : " for " + advice.machine;
-  const KernelAdvice& product = advice.kernels.front();
-  if (product.factor <= 1) {
-    return fmt::format(
-        "nothing to gain: products are no faster in another order, within the uncertainty of {}",
-        measured ? "the measurement" + on : "the prediction" + of_machine);
+/// Returns the largest end of a candidate's intervals, over the kernels of a workload.
+double most_of(const Advice& advice, Workload workload) {
+  double most = 1;
+  for (const Candidate& candidate : advice.candidates) {
+    for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
+      if (workload == Workload::all || k == kernel_of(workload))
+        most = std::max(most, gain_of(advice, candidate, k).high);
+    }
   }
-  const Candidate& candidate = advice.candidates[product.candidate];
-  if (is_vague(advice, 0, product.factor))
-    return in_doubt("products take longer", on, "they could", command_for(candidate, true));
-  return fmt::format(
-      "as it is, products take {:.1f}× as long{} as they could{}; `{}` takes {} and pays off after {}",
-      product.factor, on, measured ? " (measured here)" : " (predicted" + of_machine + ")",
-      command_for(candidate, true), duration(candidate.order_seconds), times(product.runs_to_pay, "product"));
+  return most;
 }
 
 }  // namespace
 
-std::optional<std::size_t> advised(const Advice& advice) {
-  const std::size_t k = worst(advice.kernels);
-  if (advice.kernels[k].factor <= 1) return std::nullopt;
-  if (advice.is_matrix) return advice.kernels[k].candidate;
-  // the order for all kernels, unless it does not make this kernel faster
-  const double with_first =
-      advice.as_is.costs.best_known()[k] / advice.candidates.front().costs.best_known()[k];
-  return with_first >= same_time(advice, kKernels[k]) ? 0 : advice.kernels[k].candidate;
+OrderGrade grade_of(const Quality& as_is, const Quality& ordered, Index vertices) {
+  constexpr double kGood = 1.0 / 6;
+  constexpr double kFair = 0.5;
+  // mean of log2 |x - y| for x and y spread evenly over 0 … n
+  const double random = std::log2(std::max<double>(2, vertices)) - 1.5 / std::numbers::ln2;
+  const double way = random - ordered.mean_log2_span;
+  const double gone = as_is.mean_log2_span - ordered.mean_log2_span;
+  if (gone <= kGood * way) return OrderGrade::good;
+  return gone <= kFair * way ? OrderGrade::fair : OrderGrade::poor;
 }
 
-std::optional<double> certain_gain(const Advice& advice) {
+std::string grade_in_words(const Advice& advice, Index vertices) {
+  const Quality& as_is = advice.as_is.spans;
+  const Quality& ordered = advice.candidates.front().spans;
+  const auto places = [](double mean) {
+    return mean < 9.95 ? fmt::format("{:.1f}", mean) : with_commas(std::lround(mean));
+  };
+  return fmt::format("{}: neighbours are {} places apart on average; `{}` makes it {}, random would be {}",
+                     to_string(grade_of(as_is, ordered, vertices)), places(as_is.mean_span),
+                     command_for(advice.candidates.front(), advice.is_matrix), places(ordered.mean_span),
+                     places((vertices + 1) / 3.0));
+}
+
+std::string range_in_words(const TimeRatio& ratio) {
+  const auto in_words = [](double number) { return fmt::format("{:.{}f}", number, number < 1.995 ? 2 : 1); };
+  const std::string low = in_words(ratio.low);
+  const std::string high = in_words(ratio.high);
+  return low == high ? low : low + " to " + high;
+}
+
+std::optional<std::size_t> advised(const Advice& advice) {
+  const std::size_t k = worst(advice.kernels);
+  const KernelAdvice& of_worst = advice.kernels[k];
+  if (of_worst.gain.ratio <= 1) return std::nullopt;
+  if (advice.is_matrix) return of_worst.candidate;
+  // the order for all kernels, unless it does not make this kernel faster
+  const TimeRatio with_first = gain_of(advice, advice.candidates.front(), k);
+  return with_first.ratio > 1 && is_told_apart(with_first) ? 0 : of_worst.candidate;
+}
+
+std::optional<TimeRatio> certain_gain(const Advice& advice) {
   const std::optional<std::size_t> taken = advised(advice);
   if (!taken) return std::nullopt;
-  const std::size_t k = worst(advice.kernels);
-  const double factor = advice.as_is.costs.best_known()[k] / advice.candidates[*taken].costs.best_known()[k];
-  return is_vague(advice, k, factor) ? std::nullopt : std::optional(factor);
+  return gain_of(advice, advice.candidates[*taken], worst(advice.kernels));
 }
 
 Workload judged_by_kernels(const Advice& advice, Workload workload) {
@@ -154,66 +166,49 @@ std::string comparison_in_words(const Advice& advice, Workload workload) {
   const std::string runs = runs_of(advice, judged);
   const std::optional<std::size_t> best = winner_for(judged, advice);
   if (!best) {
-    const std::size_t k = worst(advice.kernels);
-    // require twice the margin: with many orders, the best factor for one kernel also exceeds 1 by chance
-    if (is_mean && advice.kernels[k].factor > 1 + 2 * (same_time(advice, kKernels[k]) - 1)) {
-      return fmt::format("no order is better for all kernels; best for the {} kernel is {}", kKernelTitles[k],
-                         order_in_words(advice.candidates[advice.kernels[k].candidate]));
+    const KernelAdvice& of_worst = advice.kernels[worst(advice.kernels)];
+    if (is_mean && of_worst.gain.ratio > 1) {
+      return fmt::format("no order is better for all kernels; best for the {} kernel is {}",
+                         kKernelTitles[worst(advice.kernels)],
+                         order_in_words(advice.candidates[of_worst.candidate]));
     }
-    return fmt::format(
-        "nothing to gain: {} no faster in these orders than in the file's own, within the uncertainty of the "
-        "measurement{}",
-        runs, on_threads(advice.threads));
+    return no_gain(advice, most_of(advice, judged), advice.is_matrix ? "products are not" : "no kernel is");
   }
   const Candidate& candidate = advice.candidates[*best];
-  const double factor = factor_for(judged, advice, *best);
-  const std::string order = order_in_words(candidate, advice.is_matrix);
-  if (is_vague(advice, judged, factor)) {
-    return fmt::format(
-        "{} faster{} in {} than in the file's own order (measured while the machine was busy: the amount "
-        "is uncertain)",
-        runs, on_threads(advice.threads), order);
-  }
   const double steps = steps_to_pay(advice, *best);
   std::string pays;
   if (judged != Workload::all && !advice.is_matrix) {
-    pays = " and pays off after " + runs_to_pay(advice, candidate, kernel_of(judged));
+    const std::size_t k = kernel_of(judged);
+    pays = fmt::format(" and pays off after {} of that kernel",
+                       times(std::ceil(1e3 * candidate.order_seconds / saved_ms(advice, *best, k)), "run"));
   } else if (steps > 0) {
     pays = " and pays off after " + times(steps, advice.is_matrix ? "product" : "time step");
   }
-  return fmt::format("{} {:.2f}× faster{} in {} than in the file's own order{}; it takes {}{}", runs, factor,
-                     on_threads(advice.threads), order, is_mean ? ", in their geometric mean" : "",
+  return fmt::format("{} {} times faster{} in {} than in the file's own order{}; it takes {}{}", runs,
+                     range_in_words(gain_for(judged, advice, *best)), on_threads(advice.threads),
+                     order_in_words(candidate, advice.is_matrix), is_mean ? ", in their geometric mean" : "",
                      duration(candidate.order_seconds), pays);
 }
 
 inline namespace v0_3 {
 
 std::string to_string(const Advice& advice) {
-  if (advice.is_matrix) return of_products(advice);
   const std::optional<std::size_t> taken = advised(advice);
-  const bool measured = advice.as_is.costs.measured.has_value();
-  const std::string of_machine = advice.machine.empty() ? "" : " for " + advice.machine;
-  const auto& kernels = advice.kernels;
-  const std::size_t k = worst(kernels);
   if (!taken) {
-    return fmt::format(
-        "nothing to gain: no kernel runs faster in another order, within the uncertainty of {}",
-        measured ? "the measurement" + on_threads(advice.threads) : "the prediction" + of_machine);
+    return no_gain(advice, most_of(advice, Workload::all),
+                   advice.is_matrix ? "products are not" : "no kernel is");
   }
+  const std::size_t k = worst(advice.kernels);
   const Candidate& candidate = advice.candidates[*taken];
-  const double steps = steps_to_pay(advice, *taken);
-  const double factor = advice.as_is.costs.best_known()[k] / candidate.costs.best_known()[k];
-  if (is_vague(advice, k, factor)) {
-    return in_doubt(fmt::format("the {} kernel runs slower", kKernelTitles[k]), on_threads(advice.threads),
-                    "it could", command_for(candidate));
-  }
-  const std::string pays = steps > 0 ? times(steps, "time step") : runs_to_pay(advice, candidate, k);
-  return fmt::format(
-      "as it is, the {} kernel runs {:.1f}× slower{} than it could{}; `{}` takes {} and pays for itself "
-      "within {}{}",
-      kKernelTitles[k], factor, measured ? on_threads(advice.threads) : "",
-      measured ? " (measured here)" : " (predicted" + of_machine + ")", command_for(candidate),
-      duration(candidate.order_seconds), pays, losses(advice, *taken));
+  const TimeRatio gain = gain_of(advice, candidate, k);
+  const std::string subject =
+      advice.is_matrix ? "products take" : fmt::format("the {} kernel takes", kKernelTitles[k]);
+  const double runs = std::ceil(1e3 * candidate.order_seconds / saved_ms(advice, *taken, k));
+  return fmt::format("as it is, {} {} times as long as {} could ({}); `{}` takes {} and pays off after {}{}",
+                     subject, range_in_words(gain), advice.is_matrix ? "they" : "it", source_of(advice),
+                     command_for(candidate, advice.is_matrix), duration(candidate.order_seconds),
+                     advice.is_matrix ? times(runs, "product") : times(runs, "run") + " of it",
+                     losses(advice, *taken));
 }
 
 }  // namespace v0_3

@@ -66,7 +66,7 @@ TEST(PairedTrials, OnePairHasNoInterval) {
   EXPECT_DOUBLE_EQ(speedup.ratio, 2);
   EXPECT_EQ(speedup.low, 0);
   EXPECT_TRUE(std::isinf(speedup.high));
-  EXPECT_FALSE(is_told_apart(speedup));
+  EXPECT_FALSE(is_reportable(speedup));
 }
 
 TEST(PairedTrials, FewPairsAreJudgedWithTheSpreadOfTheControl) {
@@ -76,14 +76,14 @@ TEST(PairedTrials, FewPairsAreJudgedWithTheSpreadOfTheControl) {
   EXPECT_NEAR(speedup.ratio, 1.1107106, 1e-6);
   EXPECT_NEAR(speedup.low, 1.0753893, 1e-6);
   EXPECT_NEAR(speedup.high, 1.1471920, 1e-6);
-  EXPECT_TRUE(is_told_apart(speedup));
-  EXPECT_FALSE(is_told_apart(time_ratio_of(logs, {0.2, -0.2})));
+  EXPECT_TRUE(is_reportable(speedup));
+  EXPECT_FALSE(is_reportable(time_ratio_of(logs, {0.2, -0.2})));
 }
 
 TEST(PairedTrials, OnlyNarrowIntervalsAroundOneAreTold) {
-  EXPECT_TRUE(is_told_apart({.ratio = 1, .low = 0.99, .high = 1.01}));
-  EXPECT_FALSE(is_told_apart({.ratio = 1, .low = 0.99, .high = 1.02}));
-  EXPECT_TRUE(is_told_apart({.ratio = 0.8, .low = 0.7, .high = 0.99}));
+  EXPECT_TRUE(is_reportable({.ratio = 1, .low = 0.99, .high = 1.01}));
+  EXPECT_FALSE(is_reportable({.ratio = 1, .low = 0.99, .high = 1.02}));
+  EXPECT_TRUE(is_reportable({.ratio = 0.8, .low = 0.7, .high = 0.99}));
 }
 
 TEST(PairedTrials, TheControlComparesTheOwnOrderWithItself) {
@@ -183,7 +183,7 @@ TEST(PairedTrials, TenRunsTellATenthApart) {
   for (int trial = 0; trial < kTrials; ++trial) {
     Program program({1, 0.9}, 0.01, static_cast<unsigned>(trial));
     const PairedTrials trials = trial_of(program, 2, 10);
-    told += is_told_apart(trials.speedup(1)) ? 1 : 0;
+    told += is_reportable(trials.speedup(1)) ? 1 : 0;
   }
   EXPECT_GE(told, kTrials * 2 / 3);
 }
