@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
       const mo::KernelTimes& t = times[i].times[k];
       fmt::print("{:<20}{:<10}{:>10.3f}{:>10.3f}{:>8.1f}{:>9.2f}\n", orders[i][0],
                  mo::to_string(mo::kKernels[k]), t.best_ms, t.median_ms, 1e-6 * bytes[i][k] / t.best_ms,
-                 t.speedup);
+                 t.gain.ratio);
     }
   }
 }

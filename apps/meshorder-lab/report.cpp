@@ -129,6 +129,7 @@ std::string add_mesh(Page& page, const std::string& file, const ReportArguments&
   add_verdict(studied.record, studied.steadiness, is_matrix);
   if (const std::string doubt = reason_to_doubt(studied.steadiness); !doubt.empty()) {
     notes.push_back(name + ": " + doubt);
+    if (!studied.record.verdict.empty()) studied.record.verdict += ". But " + doubt;
   }
 
   progress.stage("the surface of " + name, from + 0.9 * (to - from), to);

@@ -369,8 +369,11 @@ nlohmann::ordered_json to_json(const ComparisonReport& comparison) {
   add_kernels(again, comparison, [&](const KernelTable& table) -> const OrderTimes& { return table.again; });
   const Advice advice = advice_of(comparison);
   const Workload judged = judged_by_kernels(advice, comparison.workload);
-  nlohmann::ordered_json verdict{
-      {"sentence", nullptr}, {"best", nullptr}, {"factor", 1}, {"reliable", advice.doubt.empty()}};
+  nlohmann::ordered_json verdict{{"sentence", nullptr},
+                                 {"best", nullptr},
+                                 {"factor", nullptr},
+                                 {"interval", nullptr},
+                                 {"reliable", advice.doubt.empty()}};
   if (std::string sentence = sentence_on(comparison, advice, judged); !sentence.empty())
     verdict["sentence"] = std::move(sentence);
   if (const std::optional<std::size_t> best = winner_for(judged, advice)) {

@@ -86,7 +86,9 @@ struct RunRecord {
   Offset admm_iterations = 0;
   Offset contact_iterations = 0;
   double setup_seconds = 0;
-  Offset bytes = 0;  ///< memory of the body
+  Offset bytes = 0;                  ///< memory of the body
+  double other_seconds = 0;          ///< processor seconds that other programs used during the steps
+  std::vector<double> pace_seconds;  ///< of a fixed piece of arithmetic before each turn; grows by throttling
   std::vector<std::string> warnings;
 
   bool operator==(const RunRecord&) const = default;

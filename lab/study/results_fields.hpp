@@ -108,6 +108,8 @@ inline constexpr auto kFields<RunRecord> =
                Field{"contact_iterations", &RunRecord::contact_iterations},
                Field{"setup_seconds", &RunRecord::setup_seconds},
                Field{"bytes", &RunRecord::bytes},
+               Field{"other_seconds", &RunRecord::other_seconds, false, true},
+               Field{"pace_seconds", &RunRecord::pace_seconds, false, true},
                Field{"warnings", &RunRecord::warnings}};
 
 template <>

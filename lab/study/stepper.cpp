@@ -10,11 +10,14 @@
 #include "lab/scenario/motion_file.hpp"
 #include "lab/scenario/simulation.hpp"
 #include "lab/scenario/vertex_choice.hpp"
+#include "lab/support/machine.hpp"
 #include "payoff/machine.hpp"
+#include "payoff/steadiness.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -83,6 +86,8 @@ class Stepping {
       add_frame();
     }
     RunRecord run;
+    run.pace_seconds.push_back(pace_seconds());
+    const double others_before = seconds_of_others();
     for (Index i = 0; i < turn.steps; ++i) {
       const Stopwatch stopwatch;
       const StepReport report = simulation_.body->step();
@@ -98,6 +103,7 @@ class Stepping {
       }
       if (frames_ && step_ % turn.frame_every == 0) add_frame();
     }
+    run.other_seconds = std::max(0.0, seconds_of_others() - others_before);
     if (frames_ && turn.last) frames_->commit();
     if (surfaces_ && turn.last) surfaces_->commit();
     return run;

@@ -39,6 +39,8 @@ void add(const RunRecord& turn, RunRecord& run) {
   run.cg_iterations += turn.cg_iterations;
   run.admm_iterations += turn.admm_iterations;
   run.contact_iterations += turn.contact_iterations;
+  run.other_seconds += turn.other_seconds;
+  run.pace_seconds.insert(run.pace_seconds.end(), turn.pace_seconds.begin(), turn.pace_seconds.end());
   run.warnings.insert(run.warnings.end(), turn.warnings.begin(), turn.warnings.end());
 }
 

@@ -10,10 +10,12 @@
 #include "payoff/machine.hpp"
 #include "payoff/memory_probe.hpp"
 
+#include <sys/resource.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 
 namespace meshorder {
 namespace {
@@ -29,6 +31,27 @@ std::size_t buffer_bytes(const MachineRecord& machine) {
 }
 
 }  // namespace
+
+double seconds_of_others() {
+  std::ifstream in("/proc/stat");
+  std::string title;
+  in >> title;
+  double ticks = 0;
+  for (int column = 0; column < 8; ++column) {
+    constexpr int kIdle = 3;
+    constexpr int kWaiting = 4;
+    double count = 0;
+    if (!(in >> count)) break;
+    if (column != kIdle && column != kWaiting) ticks += count;
+  }
+  rusage own{};
+  (void)getrusage(RUSAGE_SELF, &own);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  const double all = ticks / static_cast<double>(std::max(1L, sysconf(_SC_CLK_TCK)));
+  return std::max(0.0, all - seconds(own.ru_utime) - seconds(own.ru_stime));
+}
 
 std::string program_in_words(const MachineRecord& machine) {
   std::string words = "meshorder ";

@@ -30,6 +30,10 @@ struct MachineRecord {
 /// threads" are `thread_count()` threads.
 MachineRecord describe_machine();
 
+/// Returns the processor seconds that all other programs have used on this machine since it started, those
+/// that a hypervisor took away included; 0 if the system does not report them.
+double seconds_of_others();
+
 /// Returns the version and, if it is known, the revision of a study's program: "meshorder 0.2.0, revision
 /// 5eed5eed5eed", "… with changes 0123abcd".
 std::string program_in_words(const MachineRecord& machine);

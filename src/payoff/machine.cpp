@@ -11,6 +11,7 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <sstream>
 
 namespace meshorder {
 namespace {
@@ -29,21 +30,19 @@ Caches ascending(const std::vector<Offset>& sizes) {
   return caches;
 }
 
-Caches caches_in_sysfs() {
-  std::map<int, Offset> size_of_level;
-  for (int i = 0;; ++i) {
-    const std::string folder = "/sys/devices/system/cpu/cpu0/cache/index" + std::to_string(i) + "/";
-    std::ifstream level_file(folder + "level"), type_file(folder + "type"), size_file(folder + "size");
-    int level = 0;
-    std::string type;
-    Offset kilobytes = 0;  // Linux writes "48K"; reading a number stops at the K
-    if (!(level_file >> level) || !(type_file >> type) || !(size_file >> kilobytes)) break;
-    if (type != "Instruction") size_of_level[level] = kilobytes << 10;
+/// Returns how many processors a list such as "0-3,8" has.
+int processors_in(const std::string& list) {
+  int count = 0;
+  std::istringstream in(list);
+  for (std::string part; std::getline(in, part, ',');) {
+    int first = 0;
+    int last = 0;
+    char dash = 0;
+    std::istringstream range(part);
+    if (!(range >> first)) continue;
+    count += range >> dash >> last ? std::max(1, last - first + 1) : 1;
   }
-  std::vector<Offset> sizes;
-  sizes.reserve(size_of_level.size());
-  for (const auto& [level, size] : size_of_level) sizes.push_back(size);
-  return ascending(sizes);
+  return count;
 }
 
 Caches caches_in_sysconf() {
@@ -67,8 +66,35 @@ std::string core_of(int processor) {
 
 }  // namespace
 
+Caches caches_in(const std::string& folder) {
+  // No processor of today has more cache for each of its threads. A virtual machine's system may report all
+  // of a cache that other machines use, too; then a usual share is assumed.
+  constexpr Offset kMostOfAThread = Offset{16} << 20;
+  constexpr Offset kShareOfAThread = Offset{4} << 20;
+  std::map<int, Offset> size_of_level;
+  for (int i = 0;; ++i) {
+    const std::string index = folder + "/index" + std::to_string(i) + "/";
+    std::ifstream level_file(index + "level"), type_file(index + "type"), size_file(index + "size");
+    int level = 0;
+    std::string type;
+    Offset kilobytes = 0;  // Linux writes "48K"; reading a number stops at the K
+    if (!(level_file >> level) || !(type_file >> type) || !(size_file >> kilobytes)) break;
+    std::ifstream shared_file(index + "shared_cpu_list");
+    std::string shared;
+    std::getline(shared_file, shared);
+    const int threads = std::max(1, processors_in(shared));
+    const Offset bytes = kilobytes << 10;
+    if (type != "Instruction")
+      size_of_level[level] = bytes > kMostOfAThread * threads ? kShareOfAThread * threads : bytes;
+  }
+  std::vector<Offset> sizes;
+  sizes.reserve(size_of_level.size());
+  for (const auto& [level, size] : size_of_level) sizes.push_back(size);
+  return ascending(sizes);
+}
+
 Caches reported_caches() {
-  const Caches caches = caches_in_sysfs();
+  const Caches caches = caches_in("/sys/devices/system/cpu/cpu0/cache");
   return caches.level_bytes.empty() ? caches_in_sysconf() : caches;
 }
 

@@ -9,6 +9,11 @@
 
 namespace meshorder {
 
+/// Returns the data caches that a folder of Linux describes, such as /sys/devices/system/cpu/cpu0/cache. If a
+/// cache has more than 16 MiB for each hardware thread that shares it, other virtual machines use it, too;
+/// then it counts as 4 MiB for each.
+Caches caches_in(const std::string& folder);
+
 /// Returns the data caches of this machine's first processor, as Linux or the C library reports them; no
 /// caches if neither reports them.
 Caches reported_caches();

@@ -65,15 +65,13 @@ Advice advise_on(const PayoffOptions& options, const Make& make) {
     report("graph");
     const Stopwatch stopwatch;
     const CsrGraph graph = vertex_graph(mesh);
-    AdviceOptions inside{
-        .methods = options.methods,
-        .machine = machine,
-        .kernels = options.kernels,
-        .threads = threads,
-        .ordering = options.order,
-        .graph_seconds = stopwatch.seconds(),
-        .predict = options.predict,
-        .predict_in_doubt = options.kernels == KernelSet::plain && machine.model.threads == threads};
+    AdviceOptions inside{.methods = options.methods,
+                         .machine = machine,
+                         .kernels = options.kernels,
+                         .threads = threads,
+                         .ordering = options.order,
+                         .graph_seconds = stopwatch.seconds(),
+                         .predict = options.predict};
     if (options.measure) inside.measure_within = options.budget_seconds;
     return advise(mesh, graph, inside);
   });

@@ -60,10 +60,10 @@ bool is_steady(const std::vector<double>& seconds) {
   return std::all_of(seconds.end() - kRuns, seconds.end(), [&](double of_run) { return of_run <= most; });
 }
 
-void SteadinessWatch::tick() {
+double pace_seconds() {
   const Stopwatch stopwatch;
   [[maybe_unused]] volatile const std::uint64_t result = fixed_arithmetic();
-  ticks_.push_back(stopwatch.seconds());
+  return stopwatch.seconds();
 }
 
 void SteadinessWatch::add_sample(double seconds, double thread_seconds) {

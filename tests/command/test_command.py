@@ -203,10 +203,10 @@ def test_the_line_that_compare_proposes_makes_the_order_that_it_names(command):
     answer, proposed = command.ok("compare", "scrambled.node", "--methods", "hilbert,rcm").stdout.splitlines()[:2]
     if " faster in " in answer:  # on a busy machine no order may be faster
         order = re.search(" faster in (hilbert|rcm) than in the file's own order", answer)[1]
-        command.ok(*proposed.removeprefix("to order it: meshorder ").split())
+        command.ok(*proposed.split()[4:])
         assert command.json("info", "ordered-scrambled.node", "--predict", "--machine", "zen3")["edge_span"] == spans[order]
     assert command.json("compare", made, "--methods", "original", "--budget", "0.1")["verdict"] == {
-        "sentence": None, "best": None, "factor": 1}
+        "sentence": None, "best": None, "factor": None, "interval": None, "reliable": True}
 
 
 def test_compare_names_an_order_that_auto_takes_once(command):

@@ -83,7 +83,7 @@ def test_a_matrix_is_described_in_its_words(command, cube):
     assert f"\nbandwidth    {far:,}\n" in text
     assert "1 component\n" in text and "blocks" not in text
     assert "Entries by their distance from the diagonal" in text and "Predicted for each product" in text
-    assert text.startswith("a.mtx: nothing to gain: products are ")
+    assert text.startswith("a.mtx\norder        ") and "\ngain         nothing to gain: products are not more than " in text
     for word in ("vertices", "vertex", "cells", "elements", "element force", "assembly", "springs", "time step", "mesh",
                  "coordinates", "on entries"):
         assert word not in text.replace("meshorder", "") + done.stderr, word

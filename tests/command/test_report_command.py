@@ -248,13 +248,13 @@ def test_two_studies_are_compared(two):
     assert {saving["difference"]["beyond_noise"] for saving in savings} == {True, False}
 
     text = (two.folder / "comparison.md").read_text()
-    rows = re.findall(r"^\| (\w+), ([\w ]+) \| .*?, (saves|costs|no clear difference) \| .* \| (B saves more|A saves more|no clear difference) \|",
+    rows = re.findall(r"^\| (\w+), ([\w ]+) \| .*?, (saves|costs|not told apart) \| .* \| (B saves more|A saves more|not told apart) \|",
                       text, flags=re.MULTILINE)
     assert len(rows) == 24
     for (scenario, _, words, which), saving in zip(rows, savings):
         assert scenario == saving["scenario"]
         assert (which == "B saves more") == saving["difference"]["beyond_noise"]
-        assert (words == "no clear difference") == (not saving["a"]["beyond_noise"])
+        assert (words == "not told apart") == (not saving["a"]["beyond_noise"])
     for row in ("| Processor | AMD EPYC | Another 1 | differs |", "| Compiler | GNU 12.2.0 | Clang 19 | differs |",
                 "| Began | 2026-11-20T", "| Results | a/results.json | b/results.json |"):
         assert row in text, row

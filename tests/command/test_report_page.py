@@ -223,13 +223,13 @@ def test_the_first_table_says_what_orders_save_in_words_edges_and_colours(page, 
             speedup = next(order["speedup"] for order in scenario["orders"] if order["ordering"] == ordering["name"])
             if ordering["name"] != results["reference"]:
                 certain = "saves" if speedup["percent"] > 0 else "costs"
-                wanted.append((speedup["percent"], certain if speedup["beyond_noise"] else "no clear difference"))
+                wanted.append((speedup["percent"], certain if speedup["beyond_noise"] else "not told apart"))
     assert [(cell["value"], cell["words"]) for cell in cells] == wanted
-    edges = {"saves": "solid", "costs": "double", "no clear difference": "dotted"}
+    edges = {"saves": "solid", "costs": "double", "not told apart": "dotted"}
     for cell in cells:
         assert cell["edge"] == edges[cell["words"]]
-        assert (cell["back"] == "rgba(0, 0, 0, 0)") == (cell["words"] == "no clear difference")
-        if cell["words"] != "no clear difference":
+        assert (cell["back"] == "rgba(0, 0, 0, 0)") == (cell["words"] == "not told apart")
+        if cell["words"] != "not told apart":
             assert contrast(cell["back"], cell["ink"]) >= 7
     heads = page.run("return [...document.querySelectorAll('#summary th')].map((head) => head.scope)")
     assert set(heads) == {"row", "col"}
@@ -524,7 +524,7 @@ def test_two_studies_stand_side_by_side(page, two_studies, size):
     assert page.requests()[-1] == two_studies.resolve().as_uri()
     for table in ("comparison", "comparison-machines", "comparison-seconds", "comparison-kernels"):
         assert shown(page, f"#{table}"), table
-    assert {cell["words"] for cell in summary_cells(page, "comparison")} == {"saves", "costs", "no clear difference"}
+    assert {cell["words"] for cell in summary_cells(page, "comparison")} == {"saves", "costs", "not told apart"}
     assert page.run("return document.documentElement.scrollWidth") <= size[0]
     before = column(page, "#comparison", 1)
     page.run("document.querySelectorAll('#comparison thead button')[1].click()")

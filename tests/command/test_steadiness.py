@@ -1,11 +1,11 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The command warns that times measured on a busy machine are unreliable."""
+"""On a busy machine the command states no measured gain, and says why."""
 import contextlib
 import os
 import subprocess
 import sys
 
-DOUBT = "these times are unreliable: the machine is busy or throttled"
+DOUBT = "this machine is too busy to time kernels: "
 
 
 @contextlib.contextmanager
@@ -30,6 +30,21 @@ def test_compare_doubts_times_of_a_busy_machine(command, model):
     [steadiness] = done["steadiness"]
     assert steadiness["threads"] == 1 and set(steadiness) == {"threads", "waiting", "pace", "repeat"}
     assert 0.05 < steadiness["waiting"] < 1
+    assert not done["verdict"]["reliable"] and done["verdict"]["best"] is None
+    assert not any(times["told_apart"] for method in done["methods"] for times in method["kernels"].values())
+
+
+def test_sentence_and_table_of_a_busy_machine_name_no_measured_gain(command, model):
+    command.ok("order", model("grid", "--size", "16"), "-o", "s.node", "--vertices", "scrambled", "--elements", "scrambled")
+    with busy_machine():
+        compared = command.ok("compare", "s.node", "--methods", "hilbert", "--budget", "2").stdout
+        advised = command.json("info", "s.node", "--measure")
+    assert compared.startswith("s.node: the gain is not known: " + DOUBT)
+    [row] = [line for line in compared.splitlines() if line.startswith("hilbert ")]
+    assert row.split()[3:8] == ["=*"] * 5
+    verdict = advised["verdict"]
+    assert verdict["by"] == "prediction" and not verdict["reliable"] and verdict["doubt"].startswith(DOUBT)
+    assert "(predicted for" in verdict["sentence"] and advised["order"]["grade"] == "poor"
 
 
 def test_info_and_report_doubt_them_too(command, model):

@@ -149,7 +149,7 @@ TEST(Comparison, ShowsBothStudiesSideBySide) {
   EXPECT_EQ(row[3].interval, "−7.2 … −2.8");  // √5 = 2.24
   EXPECT_EQ(row[4].text, "A saves more");
   EXPECT_EQ(row[5].text, "+26.7");
-  EXPECT_EQ(tables[0].rows[0][4].text, "no clear difference");
+  EXPECT_EQ(tables[0].rows[0][4].text, "not told apart");
   EXPECT_TRUE(tables[0].rows[0][4].weak);
 
   EXPECT_EQ(tables[1].id, "comparison-machines");

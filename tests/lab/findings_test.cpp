@@ -80,6 +80,28 @@ TEST(Findings, CautionAgainstAShortStudy) {
   EXPECT_NE(finding(results, "This study is shorter than the paper's"), "");
 }
 
+TEST(Findings, TellTheLoadAndTheThrottlingOfTheMachine) {
+  StudyResults results = sample_results();
+  EXPECT_EQ(finding(results, "Load:"), "") << "not recorded by earlier versions";
+  results.machine.cores = 2;
+  for (ScenarioRecord& scenario : results.scenarios) {
+    for (ScenarioOrderRecord& order : scenario.orders) {
+      for (RunRecord& run : order.runs) {
+        run.step_seconds = {5, 5};
+        run.other_seconds = 2;  // of 20 processor seconds
+        run.pace_seconds = {0.001, 0.001};
+      }
+    }
+  }
+  RunRecord& busy = results.scenarios[1].orders[2].runs[0];
+  busy.other_seconds = 10;
+  busy.pace_seconds[1] = 0.0013;
+  const std::string where = results.orderings[2].title + " in " + results.scenarios[1].name;
+  EXPECT_EQ(finding(results, "Load:"),
+            "Load: other programs used 11 % of the processors during the runs, at most 50 % (" + where +
+                "); a fixed piece of arithmetic took up to 30 % longer than at best (" + where + ").");
+}
+
 TEST(Findings, CompareWithElementsScrambledToo) {
   StudyResults results = sample_results();
   const std::string before = finding(results, "If elements are scrambled too");

@@ -123,7 +123,7 @@ TEST(Tables, AreWithoutThePaperWhereItsFiguresSayNothing) {
 TEST(Tables, SayWhereTheNoiseSwallowsADifference) {
   const auto tables = tables_of(sample_results());
   const TableCell noise = cell(tables, "table-4", "stretch, Original", "In words");
-  EXPECT_EQ(noise.text, "within noise");
+  EXPECT_EQ(noise.text, "not told apart");
   EXPECT_TRUE(noise.weak);
   EXPECT_TRUE(cell(tables, "table-4", "stretch, Original", "Speedup, %").weak);
   EXPECT_TRUE(cell(tables, "table-3", "stretch, Original", "Saved, s").weak);
@@ -163,8 +163,8 @@ TEST(Tables, SayWhatIsCertainInEveryFormat) {
   for (const TableCell& each : {saves, open, costs}) table.rows.push_back({{"s", {}, false}, each});
   EXPECT_EQ(to_markdown({table}),
             "## T\n\n| Scenario | Order |\n| --- | ---: |\n| s | +3.0 (+2.0 … +4.0), saves |\n"
-            "| s | +1.0 (−1.0 … +3.0), no clear difference |\n| s | −3.0, costs |\n");
-  EXPECT_NE(to_csv({table}).find("t,s,Order,\"+1.0 (−1.0 … +3.0), no clear difference\",1\r\n"),
+            "| s | +1.0 (−1.0 … +3.0), not told apart |\n| s | −3.0, costs |\n");
+  EXPECT_NE(to_csv({table}).find("t,s,Order,\"+1.0 (−1.0 … +3.0), not told apart\",1\r\n"),
             std::string::npos);
   const std::string html = to_html(table);
   EXPECT_NE(
@@ -181,7 +181,7 @@ TEST(Tables, SayWhatIsCertainInEveryFormat) {
             "T\n"
             "Scenario                                    Order\n"
             "s                       +3.0 (+2.0 … +4.0), saves\n"
-            "s         +1.0 (−1.0 … +3.0), no clear difference\n"
+            "s         +1.0 (−1.0 … +3.0), not told apart\n"
             "s                                     −3.0, costs\n");
 }
 

@@ -33,9 +33,14 @@ Race raced(const std::vector<double>& milliseconds, Workload workload = Workload
   options.machine = choose_machine("zen3");
   options.ordering.workload = workload;
   options.timer = [&](Index orders, const auto& /*prepare*/, const TimingOptions& /*timing*/) {
-    Timings timings{std::vector<OrderTimes>(static_cast<std::size_t>(orders)), {}};
+    Timings timings{
+        .orders = std::vector<OrderTimes>(static_cast<std::size_t>(orders)), .again = {}, .steadiness = {}};
     for (std::size_t i = 0; i < timings.orders.size(); ++i) {
-      for (const Kernel kernel : kKernels) timings.orders[i][kernel].best_ms = milliseconds.at(i);
+      const double ratio = milliseconds.front() / milliseconds.at(i);
+      for (const Kernel kernel : kKernels) {
+        timings.orders[i][kernel].best_ms = milliseconds.at(i);
+        timings.orders[i][kernel].gain = {ratio, ratio / 1.05, ratio * 1.05};
+      }
     }
     timings.steadiness.waiting = waiting;
     return timings;
@@ -78,7 +83,8 @@ TEST(Race, TimesWhatAutoTakesAndTwoOthersForHalfASecondEach) {
     timed = orders;
     timing = given;
     for (Index i = 0; i < orders; ++i) bytes.push_back(prepare(i)->streamed_bytes(Kernel::spmv));
-    return Timings{std::vector<OrderTimes>(static_cast<std::size_t>(orders)), {}};
+    return Timings{
+        .orders = std::vector<OrderTimes>(static_cast<std::size_t>(orders)), .again = {}, .steadiness = {}};
   };
   const Race result = race(mesh, graph, options);
   EXPECT_EQ(timed, 4);
@@ -144,7 +150,8 @@ TEST(Race, LeavesOutOrdersByCoordinatesForAMatrixWithoutThem) {
     options.machine = choose_machine("zen3");
     options.ordering.workload = Workload::spmv;
     options.timer = [](Index timed, const auto& /*prepare*/, const TimingOptions& /*timing*/) {
-      return Timings{std::vector<OrderTimes>(static_cast<std::size_t>(timed)), {}};
+      return Timings{
+          .orders = std::vector<OrderTimes>(static_cast<std::size_t>(timed)), .again = {}, .steadiness = {}};
     };
     for (const Candidate& candidate : race(matrix, graph, options).advice.candidates) {
       names.push_back(candidate.vertices.name);

@@ -13,10 +13,10 @@
 namespace meshorder {
 namespace {
 
-/// Returns "A saves more", "B saves more" or "no clear difference".
+/// Returns "A saves more", "B saves more" or "not told apart".
 TableCell words_cell(const std::optional<SavingDifference>& difference) {
   if (!difference || !difference->beyond_noise) {
-    TableCell cell = text_cell("no clear difference");
+    TableCell cell = text_cell("not told apart");
     cell.weak = true;
     return cell;
   }

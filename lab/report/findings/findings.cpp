@@ -13,6 +13,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -108,6 +109,35 @@ std::string caution(const StudyResults& results) {
   if (shorter.empty()) return words + ".";
   if (few_runs) words += "; ";
   return words + in_words(shorter) + ". Later steps may cost more or less than the first ones.";
+}
+
+/// Returns a sentence on the load and the throttling of the machine; empty if the study did not record them.
+std::string load_in_words(const StudyResults& results) {
+  double seconds = 0;
+  double of_others = 0;
+  Range share;
+  Range pace;
+  for (const ScenarioRecord& scenario : results.scenarios) {
+    for (const ScenarioOrderRecord& order : scenario.orders) {
+      const std::string where = fmt::format("{} in {}", title_of(results, order.ordering), scenario.name);
+      for (const RunRecord& run : order.runs) {
+        if (run.pace_seconds.empty()) continue;
+        const double of_run = std::accumulate(run.step_seconds.begin(), run.step_seconds.end(), 0.0);
+        const double available = std::max(1, results.machine.cores) * std::max(of_run, 1e-9);
+        share.add(std::min(1.0, run.other_seconds / available), where);
+        for (const double one : run.pace_seconds) pace.add(one, where);
+        seconds += available;
+        of_others += run.other_seconds;
+      }
+    }
+  }
+  if (share.empty()) return {};
+  std::string words = fmt::format(
+      "Load: other programs used {:.0f} % of the processors during the runs, at most {:.0f} % ({})",
+      100 * std::min(1.0, of_others / seconds), 100 * share.most, share.most_name);
+  words += fmt::format("; a fixed piece of arithmetic took up to {:.0f} % longer than at best ({}).",
+                       100 * (pace.most / std::max(pace.least, 1e-9) - 1), pace.most_name);
+  return words;
 }
 
 /// Returns the largest distance from the first order's motion, over all orders of a scenario, as a share of
@@ -207,7 +237,8 @@ std::string against_all_scrambled(const StudyResults& results) {
 }  // namespace
 
 std::vector<std::string> findings_of(const StudyResults& results) {
-  std::vector<std::string> findings{caution(results), payments(results), against_all_scrambled(results),
+  std::vector<std::string> findings{caution(results),     load_in_words(results),
+                                    payments(results),    against_all_scrambled(results),
                                     same_motion(results), other_work(results)};
   std::ranges::move(mesh_findings(results), std::back_inserter(findings));
   std::erase(findings, "");

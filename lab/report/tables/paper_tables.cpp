@@ -143,7 +143,7 @@ Table speedup_table(const StudyResults& results) {
   }
   for_each_order(results, true, [&](const ScenarioRecord& scenario, const ScenarioOrderRecord& order) {
     const Speedup& s = order.speedup;
-    const std::string words = !s.beyond_noise ? "within noise" : s.percent > 0 ? "gain" : "loss";
+    const std::string words = !s.beyond_noise ? "not told apart" : s.percent > 0 ? "gain" : "loss";
     std::vector<TableCell> row{head_of(results, scenario, order),
                                percent_cell(s.percent),
                                percent_cell(s.low),

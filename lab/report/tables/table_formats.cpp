@@ -35,7 +35,7 @@ std::string_view words_of(Certainty certainty) {
     case Certainty::saves:
       return "saves";
     case Certainty::open:
-      return "no clear difference";
+      return "not told apart";
     case Certainty::costs:
       return "costs";
     case Certainty::unsaid:

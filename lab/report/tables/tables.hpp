@@ -14,7 +14,7 @@ namespace meshorder {
 enum class Certainty {
   unsaid,  ///< the cell shows something else
   saves,   ///< the interval lies above 0
-  open,    ///< the interval contains 0, or there is no interval: no clear difference
+  open,    ///< the interval contains 0, or there is no interval: not told apart
   costs    ///< the interval lies below 0
 };
 

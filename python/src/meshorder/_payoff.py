@@ -69,13 +69,17 @@ class KernelAdvice(NamedTuple):
 
     Attributes:
         candidate: position in ``Advice.candidates`` of the order in which the kernel runs fastest.
-        factor: the present time divided by the time in that order; 1 if nothing is gained.
+        factor: the present time divided by the time in that order; 1 if no order is told apart as faster.
+        low: the lower end of the interval of ``factor``, which holds the true one in 95 of 100 measurements.
+        high: its upper end.
         runs_to_pay: runs of the kernel after which the order has saved more time than it cost; 0 if nothing is
             gained.
     """
 
     candidate: int
     factor: float
+    low: float
+    high: float
     runs_to_pay: float
 
 
@@ -84,16 +88,16 @@ class Advice:
     """How much faster the kernels would run if a mesh were reordered; ``str(advice)`` is the verdict.
 
     Attributes:
-        verdict: one sentence: which kernel loses most in the present order, which order is better and after how many time
-            steps it has saved its own cost; or that nothing is gained.
+        verdict: one sentence: which kernel loses most in the present order, which order is better and after how many runs of
+            it the order has saved its own cost; or that nothing is gained, or that the gain is not known.
         as_is: the present order of the mesh.
         candidates: other orders; the first is the one that `reorder` chooses without arguments.
         kernels: the best candidate for each kernel, by the kernel's name: its position ``candidate`` in ``candidates``;
             ``factor``, the present time divided by the time in that order; and ``runs_to_pay``, the runs of the
-            kernel after which the order has saved more time than it cost. Times that differ by less than the
-            uncertainty of a measurement or prediction count as equal; then ``factor`` is 1 and ``runs_to_pay`` 0.
-        doubt: reason not to trust the measured times (the machine was busy or throttled); empty if they are reliable,
-            or if nothing was measured.
+            kernel after which the order has saved more time than it cost. If times are not told apart, ``factor``
+            is 1 and ``runs_to_pay`` 0.
+        doubt: reason not to trust the measured times (the machine was busy or throttled): then the advice rests on
+            predictions. Empty if they are reliable, or if nothing was measured.
         machine: the machine that the predicted times are for: "this machine, calibrated 2026-11-22", "zen3", or "this
             machine's caches at the costs of zen3"; empty if nothing was predicted.
         threads: number of threads that shared each run of a kernel.
@@ -266,7 +270,8 @@ def advise(
             SciPy, networkx or PyTorch: its product with a vector is the only kernel then, "spmv".
         measure: True runs the kernels on this machine; False predicts their times from reuse distances and a cost model.
             None: they are run if that takes a few seconds, up to half a million tetrahedra or a matrix of a million
-            entries; for larger ones, and for a named machine, their times are predicted.
+            entries, and predicted, too, for the case that the machine is busy; for larger ones, and for a named
+            machine, they are only predicted.
         kernels: "plain": as in most programs, one simple loop; "tuned": as in the simulators of
             ``meshorder simulate``, which prefetch, work on blocks, and run alike in all good orders; these
             can only be measured.
@@ -298,7 +303,9 @@ def advise(
         handle = _handle_of(mesh)
         measured = _runs_quickly(handle, machine) if measure is None else measure
         seconds = (10 if measure else 2) if budget is None else budget
-        made = handle.advise([], not measured, measured, kernels, seconds, machine, all_threads, given)
+        # a busy machine gives no reliable times; then predictions decide
+        predicts = not measured or measure is None and kernels == "plain" and not all_threads
+        made = handle.advise([], predicts, measured, kernels, seconds, machine, all_threads, given)
     verdict, as_is, candidates, best_of, doubt, predicted_for, threads = made
     return Advice(
         verdict,
