@@ -26,11 +26,8 @@ namespace {
 
 constexpr const char* kBand = "band";
 
-/// Returns the time of an order divided by that of the order `band`. Both times are relative to the file's
-/// order: orders that do not fit into memory together are timed in groups that each contain the file's order.
-double of_band(const KernelTimes& times, const KernelTimes& band) {
-  return band.gain.ratio / times.gain.ratio;
-}
+/// Returns the best time of an order divided by that of the order `band`.
+double of_band(const KernelTimes& times, const KernelTimes& band) { return times.best_ms / band.best_ms; }
 
 /// Returns the name of an order in the table: "hilbert", or "rcm (auto)".
 std::string label(const ComparisonReport& report, std::size_t i) {
@@ -60,8 +57,9 @@ Column column(std::string title, const KernelTable& table,
               const std::function<TimeRatio(const OrderTimes&)>& ratio_of) {
   Column result{std::move(title), {}};
   for (const OrderTimes& times : table.orders) {
-    result.ratios.push_back(ratio_of(times));
-    result.best = std::max(result.best, result.ratios.back().ratio);
+    const TimeRatio ratio = ratio_of(times);
+    if (is_told_apart(ratio)) result.best = std::max(result.best, ratio.ratio);
+    result.ratios.push_back(ratio);
   }
   result.ratios.push_back(ratio_of(table.band));
   result.again = ratio_of(table.again).ratio;
@@ -135,7 +133,7 @@ void print_speedups(const Console& console, const ComparisonReport& comparison, 
                                   is_band || i == 0 ? "-" : duration(comparison.orders[i].seconds));
     for (const Column& c : columns) {
       const bool is_known = i < c.ratios.size();
-      const bool is_best = is_known && !is_band && c.ratios[i].high >= c.best && (i > 0 || c.best == 1);
+      const bool is_best = is_known && !is_band && c.ratios[i].high >= c.best;
       row +=
           fmt::format("{:>{}}{}", is_known ? cell(c.ratios[i], i == 0) : "-", width(c), is_best ? '*' : ' ');
     }

@@ -20,8 +20,8 @@ def test_the_answer_says_what_a_scrambled_grid_loses(command, scrambled):
     text = command.ok("info", scrambled).stdout
     name, order, gain, line = text.splitlines()[:4]
     assert name == "scrambled.node"
-    assert re.fullmatch(r"order        poor: neighbours are 4,\d{3} places apart on average; `meshorder order` makes it [\d.]+, "
-                        r"random would be 4,608", order)
+    assert re.fullmatch(r"order        poor: neighbours are 5,\d{3} places apart on average; `meshorder order` makes it [\d.]+, "
+                        r"random would be 5,209", order)
     assert gain.startswith("gain         as it is, ") and re.search(r"[\d.]+ to [\d.]+ times as long as it could", gain)
     assert "`meshorder order` takes" in gain and re.search(r"pays off after \d+ runs? of it", gain)
     assert "A time step here: " in text and "bfs/lexmax" in text
