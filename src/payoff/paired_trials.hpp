@@ -76,8 +76,8 @@ class PairedTrials {
 
   /// Returns the speedup of a candidate (≥ 1).
   [[nodiscard]] TimeRatio speedup(std::size_t candidate) const;
-  /// Returns the median, the smallest and the largest ratio of the file's own order to itself, in rounds 1 and
-  /// 2, 3 and 4 …. What they differ from 1 is noise. `high` is infinite before round 2.
+  /// Returns the median, the smallest and the largest ratio of the file's own order to itself, in rounds 1
+  /// and 2, 3 and 4 …. What they differ from 1 is noise. `high` is infinite before round 2.
   [[nodiscard]] TimeRatio control() const;
   /// Returns how many pairs the candidate has with the file's own order.
   [[nodiscard]] std::size_t pairs(std::size_t candidate) const { return logs_[candidate].size(); }

@@ -39,7 +39,8 @@ TEST(GpuCard, times_are_near_those_that_were_measured) {
   }
 }
 
-/// Random orders of the dragon, 161,222 tetrahedra, and of the body, 1,299,557: the cache holds their vertices.
+/// Random orders of the dragon, 161,222 tetrahedra, and of the body, 1,299,557: the cache holds their
+/// vertices.
 TEST(GpuCard, times_without_repeated_reads_are_those_of_the_sectors) {
   const GpuCard* const card = gpu_card("h100");
   ASSERT_NE(card, nullptr);
