@@ -81,7 +81,7 @@ void add_verdict(MeshRecord& record, const Steadiness& steadiness, bool is_matri
   Advice advice;
   advice.is_matrix = is_matrix;
   advice.doubt = reason_to_doubt(steadiness);
-  advice.floor.fill(steadiness.repeat);
+  if (advice.doubt.empty()) advice.floor.fill(steadiness.repeat);
   const std::size_t kernels = kernels_of(advice).size();
   advice.as_is.costs = costs_of(*as_it_is, kernels);
   advice.candidates.push_back({.vertices = {ordered->vertex_method, "chosen by auto"},

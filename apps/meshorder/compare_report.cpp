@@ -119,9 +119,8 @@ void print_speedups(const Console& console, const ComparisonReport& comparison, 
   std::string heads = fmt::format("{:<26} {:>8}", "order", "cost");
   for (const Column& c : columns) heads += fmt::format("{:>{}} ", c.title, width(c));
   console.print(
-      "\nHow many times faster than in the file's own order{}. *: the best, and orders not told apart from "
-      "it;\n"
-      "=: not told apart from the file's own order\n{}",
+      "\nHow many times faster than in the file's own order{}. =: not told apart from it;\n"
+      "*: the best, and orders not told apart from the best\n{}",
       on_threads(table.threads), heads);
   const auto cell = [](const TimeRatio& ratio, bool is_own) {
     return is_own || is_told_apart(ratio) ? fmt::format("{:.2f}", ratio.ratio) : "=";

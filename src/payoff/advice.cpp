@@ -227,12 +227,9 @@ void predict(Advice& advice, const Orders& orders, const AdviceOptions& options)
 void measure(Advice& advice, const Orders& orders, const AdviceOptions& options,
              const Stopwatch& since_call) {
   report("measure");
-  const bool in_race = is_race(options);
-  const Timings timings = in_race ? raced(orders.all, options) : measured(orders.all, options, since_call);
+  const Timings timings =
+      is_race(options) ? raced(orders.all, options) : measured(orders.all, options, since_call);
   advice.doubt = reason_to_doubt(timings.steadiness);
-  if (!in_race) {
-    for (double& share : advice.floor) share = std::max(share, timings.steadiness.repeat);
-  }
   for_candidates(advice, orders, [&](Candidate& candidate, std::size_t order) {
     KernelMilliseconds& milliseconds = candidate.costs.measured.emplace();
     auto& gains = candidate.costs.gains.emplace();

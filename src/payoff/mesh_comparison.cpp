@@ -166,7 +166,6 @@ Advice advice_of(const MeshComparison& comparison) {
   advice.kernel_set = comparison.kernel_set;
   advice.is_matrix = comparison.is_matrix();
   advice.doubt = reason_to_doubt(table.steadiness);
-  advice.floor.fill(table.steadiness.repeat);
   const auto candidate_of = [&](std::size_t i) {
     const ComparedMeshOrder& c = comparison.orders[i];
     Candidate candidate{.vertices = c.order.vertices.method,

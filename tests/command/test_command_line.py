@@ -203,7 +203,7 @@ def test_an_option_without_a_value_takes_no_other_for_it(command, mesh, tmp_path
 
 
 def widths(text):
-    return [len(line) for line in text.splitlines() if not line.startswith(("grid.node: ", "to order it: ", "auto takes"))]
+    return [len(line) for line in text.splitlines() if not line.startswith(("grid.node", "order  ", "gain  ", "to order it", "auto takes"))]
 
 
 @pytest.mark.parametrize("words", [[], ["order"], ["apply"], ["info"], ["compare"], ["simulate"], ["reproduce"],

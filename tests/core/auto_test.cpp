@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "graph/csr_graph.hpp"
 #include "metrics/edge_span.hpp"
 #include "metrics/measures.hpp"
 #include "ordering/judgement.hpp"
@@ -17,6 +18,8 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace meshorder {
@@ -105,6 +108,37 @@ TEST(Auto, JudgesByTheUse) {
   const Permutation dissected = order_graph("metis-nd", {graph, {}}).permutation;
   EXPECT_EQ(reason_to_keep(graph, dissected, "metis-nd", Workload::fill), "");
   EXPECT_NE(reason_to_keep(graph, dissected, "metis-nd", Workload::all), "");
+}
+
+/// Places the vertices of 1,000 blocks of four: `first` of the first blocks, `second` of the next ones, and
+/// "abcd" of the others.
+Permutation blocks(std::string_view first, Index count, std::string_view second = "abcd", Index seconds = 0) {
+  std::vector<Index> new_to_old;
+  for (Index block = 0; block < 1000; ++block) {
+    for (const char vertex : block < count ? first : block < count + seconds ? second : "abcd")
+      new_to_old.push_back(4 * block + (vertex - 'a'));
+  }
+  return Permutation::from_new_to_old(std::move(new_to_old));
+}
+
+/// Returns whether `auto` would move blocks with the edges ab and cd.
+bool moves(const Permutation& before, const Permutation& after) {
+  std::vector<Edge> edges;
+  for (Index v = 0; v < before.size(); v += 2) edges.push_back({v, v + 1});
+  const CsrGraph graph = renumbered(graph_from_edges(before.size(), edges), before.old_to_new());
+  return reason_to_keep(graph, before.inverse().then(after), "rcm", Workload::all).empty();
+}
+
+TEST(Judgement, MovesIfTheMeanSpanFallsByTwoPerCent) {
+  // spans of 2 and 2 become 1 and 1
+  EXPECT_FALSE(moves(blocks("acbd", 20), blocks("abcd", 0))) << "by 1.96 %";
+  EXPECT_TRUE(moves(blocks("acbd", 21), blocks("abcd", 0))) << "by 2.06 %";
+}
+
+TEST(Judgement, ToleratesAMeanSpanThatGrowsByFivePerCentIfLogarithmsFall) {
+  // in 800 blocks, spans of 2 and 2 become 3 and 1; in others, spans of 1 and 1 become 2 and 2
+  EXPECT_TRUE(moves(blocks("acbd", 800), blocks("acdb", 800, "acbd", 80))) << "by 4.4 %";
+  EXPECT_FALSE(moves(blocks("acbd", 800), blocks("acdb", 800, "acbd", 100))) << "by 5.6 %";
 }
 
 /// The edges of a path, in the given order.
