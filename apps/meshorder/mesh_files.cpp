@@ -55,7 +55,7 @@ MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t by
 
 std::vector<std::string> files_of_mesh(const OutputSet& outputs, const std::string& output) {
   std::vector<std::string> files = outputs.files();
-  std::ranges::stable_partition(files, [&](const std::string& file) { return file == output; });
+  std::stable_partition(files.begin(), files.end(), [&](const std::string& file) { return file == output; });
   return files;
 }
 
