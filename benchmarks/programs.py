@@ -187,9 +187,11 @@ def row(found):
     auto = next((order for order in orders if order["by_auto"]), None)
     best = next(order for order in orders if order["name"] == found["best"])
     iterations = "" if own["count"] is None else f"{own['count']:.0f} → {best['count']:.0f}"
-    gain_of_best = gain(best) if found["verdict"] in ("faster", "slower", "tie") else "not told apart"
+    decided = found["verdict"] in ("faster", "slower", "tie")
+    gain_of_best = gain(best) if decided else "not told apart"
+    gain_of_auto = "stays" if auto is None else gain(auto) if decided else "not told apart"
     return (f"| {found['title']} | {number(own['time'])} s | {found['best']} | {gain_of_best} | "
-            f"{gain(auto) if auto else 'stays'} | {iterations} |")
+            f"{gain_of_auto} | {iterations} |")
 
 
 def main():

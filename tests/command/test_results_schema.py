@@ -9,7 +9,7 @@ import conftest
 import schemas
 
 # keys that earlier versions did not write; they may be missing
-ADDED = {"revision", "precision", "gain"}
+ADDED = {"revision", "precision", "gain", "other_seconds", "pace_seconds"}
 ADDED_SECONDS = {"triangulation", "order", "motion"}
 SCHEMA = schemas.read_schema(conftest.ROOT / "docs" / "results.schema.json")
 

@@ -136,7 +136,7 @@ def test_nothing_below_includes_what_is_above(folder, above):
 OPENING = re.compile(r"\b(ifstream|fopen|freopen)\b|(?<!\w)::open(at)?\(")
 MAY_OPEN = {
     "src/base/input_file.cpp", "src/io/stream/descriptor.cpp", "src/base/memory.cpp", "src/base/host.cpp",
-    "src/payoff/machine.cpp", "lab/study/folder_lock.cpp", "lab/study/study_turns.cpp", "lab/models/cache.cpp",
+    "src/payoff/machine.cpp", "lab/support/machine.cpp", "lab/study/folder_lock.cpp", "lab/study/study_turns.cpp", "lab/models/cache.cpp",
     "apps/meshorder/standard_streams.cpp", "apps/meshorder-models/surface.cpp",
     "apps/meshorder/output_deputy.cpp", "apps/meshorder/restrictions.cpp", "src/io/stream/scratch.cpp",
     "apps/meshorder/trial_program.cpp",
