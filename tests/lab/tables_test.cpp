@@ -179,10 +179,10 @@ TEST(Tables, SayWhatIsCertainInEveryFormat) {
       std::string::npos);
   EXPECT_EQ(to_text(table),
             "T\n"
-            "Scenario                                    Order\n"
-            "s                       +3.0 (+2.0 … +4.0), saves\n"
+            "Scenario                               Order\n"
+            "s                  +3.0 (+2.0 … +4.0), saves\n"
             "s         +1.0 (−1.0 … +3.0), not told apart\n"
-            "s                                     −3.0, costs\n");
+            "s                                −3.0, costs\n");
 }
 
 TEST(Tables, StateTheErrorOfPredictions) {
