@@ -93,7 +93,9 @@ class KernelBench {
  protected:
   KernelBench() = default;
   KernelBench(const KernelBench&) = default;
+  KernelBench(KernelBench&&) = default;
   KernelBench& operator=(const KernelBench&) = default;
+  KernelBench& operator=(KernelBench&&) = default;
 
  private:
   virtual void compute(Kernel kernel) = 0;
