@@ -342,6 +342,7 @@ WriteProtection::WriteProtection(const std::vector<fs::path>& originals, const f
     : rules_(std::make_unique<const Ruleset>(kChange)) {
   if (!rules_->is_possible()) return;
   std::vector<fs::path> denied;
+  denied.reserve(originals.size());
   for (const fs::path& original : originals) denied.push_back(fs::canonical(original));
   if (std::ranges::find(denied, "/") == denied.end()) {
     allow_changes(*rules_, "/", denied);
