@@ -275,7 +275,7 @@ $Periodic
 3
 1 2
 3 5
-4 1
+4 5
 $EndPeriodic
 """
 

@@ -387,15 +387,21 @@ TEST(Gmsh, LeavesOutPeriodicPairsOfNodesThatAreNotThere) {
   EXPECT_THAT(notes, ElementsAre(HasSubstr("1 pairs of $Periodic are ignored")));
 }
 
-TEST(Gmsh, LeavesOutPeriodicPairsWithANodeOfAnEarlierPair) {
-  for (const char* const pairs : {"2\n10 20\n10 30\n", "2\n10 20\n30 20\n", "2\n10 20\n10 20\n"}) {
+TEST(Gmsh, KeepsPeriodicPairsWithANodeOfAnEarlierPair) {
+  for (const std::string pairs : {"2\n10 20\n10 30\n", "2\n10 20\n30 20\n", "2\n10 20\n10 20\n"}) {
     Notes notes;
-    const Mesh mesh = read_text(
-        replaced(std::string(kGmsh41), "2\n10 2\n20 30\n$EndP", std::string(pairs) + "$EndP"), &notes);
+    const Mesh mesh =
+        read_text(replaced(std::string(kGmsh41), "2\n10 2\n20 30\n$EndP", pairs + "$EndP"), &notes);
     EXPECT_EQ(set_of(mesh, "gmsh:periodic 2 3").members.size(), 1U);
-    EXPECT_EQ(set_of(mesh, "gmsh:periodic 2 3 master").members.size(), 1U);
-    EXPECT_THAT(notes, ElementsAre(HasSubstr("1 pairs of $Periodic are ignored: an earlier pair")));
+    EXPECT_EQ(set_of(mesh, "gmsh:periodic 2 3 2 master").members.size(), 1U);
+    EXPECT_THAT(notes, IsEmpty());
+    EXPECT_THAT(written(mesh), HasSubstr(pairs + "$EndP"));
   }
+  std::string many;
+  for (int i = 0; i < 66; ++i) many += "10 20\n";
+  Notes notes;
+  (void)read_text(replaced(std::string(kGmsh41), "2\n10 2\n20 30\n$EndP", "66\n" + many + "$EndP"), &notes);
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("2 pairs of $Periodic are ignored: 64 earlier pairs")));
 }
 
 TEST(Gmsh, KeepsUnknownSectionsWithoutNumbers) {

@@ -79,14 +79,20 @@ struct View {
   int nodes = 1;  ///< nodes per cell, for PerElement::fixed
 };
 
-/// A periodic entity of $Periodic. Its nodes and their masters are two sets, in the same order.
+/// Names of two sets in the same order: nodes, and their masters.
+struct NodePairs {
+  std::string nodes;
+  std::string masters;
+};
+
+/// A periodic entity of $Periodic.
 struct PeriodicLink {
   std::int32_t dimension = 0;
   std::int32_t tag = 0;
   std::int32_t master = 0;
   std::vector<double> affine;
-  std::string nodes;         ///< name of the set of nodes
-  std::string master_nodes;  ///< name of the set of their master nodes
+  /// A set has each node once: a node that k pairs name is in the sets of the first k of these.
+  std::vector<NodePairs> pairs;
 };
 
 struct PhysicalName {

@@ -2,8 +2,10 @@
 #include "io/gmsh/gmsh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <set>
-#include <unordered_set>
+#include <unordered_map>
+#include <utility>
 
 // Sections that refer to nodes and elements by number: $Periodic and $GhostElements.
 
@@ -41,16 +43,24 @@ Index read_affine(ReadContext& reading, PeriodicLink& link) {
 /// Numbers of pairs that are left out.
 struct LeftOut {
   Index missing = 0;   ///< they name a node that the file does not have
-  Index repeated = 0;  ///< they name a node that an earlier pair of the entity names in the same place
+  Index repeated = 0;  ///< kMostSets pairs of the entity name the same node before them
 };
 
-/// Reads pairs of nodes as two sets.
+constexpr std::size_t kMostSets = 64;  // a hostile file could ask for one for each pair
+
+/// Reads pairs of nodes as pairs of sets.
 void read_pairs(ReadContext& reading, PeriodicLink& link, Index count, LeftOut& left_out) {
   const std::string name = "gmsh:periodic " + std::to_string(link.dimension) + " " + std::to_string(link.tag);
-  EntitySet nodes{name, Association::vertices, {}};
-  EntitySet masters{name + " master", Association::vertices, {}};
-  std::unordered_set<Index> seen_nodes;
-  std::unordered_set<Index> seen_masters;
+  std::vector<std::array<EntitySet, 2>> sets;
+  const auto add_sets = [&] {
+    const std::string further = sets.empty() ? name : name + " " + std::to_string(sets.size() + 1);
+    link.pairs.push_back({further, further + " master"});
+    sets.push_back({EntitySet{link.pairs.back().nodes, Association::vertices, {}},
+                    EntitySet{link.pairs.back().masters, Association::vertices, {}}});
+  };
+  add_sets();
+  std::unordered_map<Index, std::size_t> sets_of_node;  // number of the first sets that may have the node
+  std::unordered_map<Index, std::size_t> sets_of_master;
   for (Index i = 0; i < count; ++i) {
     const Index node = reading.nodes.find(read_number(reading, "a periodic node"));
     const Index master = reading.nodes.find(read_number(reading, "a periodic node"));
@@ -58,19 +68,32 @@ void read_pairs(ReadContext& reading, PeriodicLink& link, Index count, LeftOut& 
       ++left_out.missing;
       continue;
     }
-    if (seen_nodes.contains(node) || seen_masters.contains(master)) {
+    const std::size_t place = std::max(sets_of_node[node], sets_of_master[master]);
+    if (place == kMostSets) {
       ++left_out.repeated;
       continue;
     }
-    seen_nodes.insert(node);
-    seen_masters.insert(master);
-    nodes.members.push_back(node);
-    masters.members.push_back(master);
+    if (place == sets.size()) add_sets();
+    sets_of_node[node] = sets_of_master[master] = place + 1;
+    sets[place][0].members.push_back(node);
+    sets[place][1].members.push_back(master);
   }
-  link.nodes = nodes.name;
-  link.master_nodes = masters.name;
-  reading.mesh.sets.push_back(std::move(nodes));
-  reading.mesh.sets.push_back(std::move(masters));
+  for (auto& [nodes, masters] : sets) {
+    reading.mesh.sets.push_back(std::move(nodes));
+    reading.mesh.sets.push_back(std::move(masters));
+  }
+}
+
+/// Returns the pairs; none if their sets have been removed from the mesh.
+std::vector<std::pair<Index, Index>> nodes_of(const NodePairs& pairs, const WriteContext& output) {
+  const EntitySet* const nodes = output.parts.set(pairs.nodes, Association::vertices);
+  const EntitySet* const masters = output.parts.set(pairs.masters, Association::vertices);
+  std::vector<std::pair<Index, Index>> result;
+  if (nodes == nullptr || masters == nullptr) return result;
+  const std::size_t count = std::min(nodes->members.size(), masters->members.size());
+  result.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) result.emplace_back(nodes->members[i], masters->members[i]);
+  return result;
 }
 
 }  // namespace
@@ -105,8 +128,8 @@ void read_periodic(ReadContext& reading, std::string_view section) {
   }
   if (left_out.repeated > 0) {
     reading.notes.push_back(
-        fmt::format("{} pairs of $Periodic are ignored: an earlier pair of the entity names the same node",
-                    left_out.repeated));
+        fmt::format("{} pairs of $Periodic are ignored: {} earlier pairs of the entity name the same node",
+                    left_out.repeated, kMostSets));
   }
 }
 
@@ -131,17 +154,16 @@ void write_periodic(NumberWriter& sink, const WriteContext& output) {
     }
     for (const double value : link.affine) to.real(value);
     if (!affine_line || !link.affine.empty()) to.end_line();
-    // the sets may have been removed from the mesh
-    const EntitySet* nodes = output.parts.set(link.nodes, Association::vertices);
-    const EntitySet* masters = output.parts.set(link.master_nodes, Association::vertices);
-    const Index count =
-        nodes && masters ? std::min(index_size(nodes->members), index_size(masters->members)) : 0;
+    Index count = 0;
+    for (const NodePairs& pairs : link.pairs) count += index_size(nodes_of(pairs, output));
     to.size(count);
     to.end_line();
-    for (Index i = 0; i < count; ++i) {
-      to.number(output.node_id(nodes->members[i]), wide);
-      to.number(output.node_id(masters->members[i]), wide);
-      to.end_line();
+    for (const NodePairs& pairs : link.pairs) {
+      for (const auto& [node, master] : nodes_of(pairs, output)) {
+        to.number(output.node_id(node), wide);
+        to.number(output.node_id(master), wide);
+        to.end_line();
+      }
     }
   }
 }

@@ -112,7 +112,9 @@ void note_sets(const Mesh& mesh, const GmshMetadata& layout, Notes& notes) {
   std::multimap<Name, const EntitySet*> physical;
   for (const EntitySet& set : of_layout) physical.emplace(Name(set.association, set.name), &set);
   std::set<std::string> periodic;
-  for (const PeriodicLink& link : layout.periodic) periodic.insert({link.nodes, link.master_nodes});
+  for (const PeriodicLink& link : layout.periodic) {
+    for (const NodePairs& pairs : link.pairs) periodic.insert({pairs.nodes, pairs.masters});
+  }
   for (const EntitySet& set : mesh.sets) {
     if (set.association == Association::vertices && periodic.contains(set.name)) continue;
     std::vector<Index> members = set.members;
