@@ -30,6 +30,7 @@ using Lists = std::map<std::string, std::vector<std::string>>;
 /// Returns lists without the names of arrays on points and cells.
 Lists lists_of(const std::vector<DataArray>& fields) {
   std::vector<std::string> names;
+  names.reserve(fields.size());
   for (const DataArray& field : fields) names.push_back(field.name);
   return {{data_group(Association::vertices), {}},
           {data_group(Association::cells), {}},
