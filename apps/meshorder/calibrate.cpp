@@ -128,7 +128,7 @@ void recheck_machine(const CalibrateArguments& arguments, Console& console) {
   }
   const Recheck found =
       watched(arguments, "rechecking this machine", [&] { return recheck(*stored.calibration); });
-  if (!found.doubt.empty()) console.warn(found.doubt);
+  if (!found.doubt.empty()) console.warn(found.doubt + "; recheck when it is idle");
   console.print("Time now / time predicted by the calibration of {}", stored.calibration->date);
   Json ratios;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
@@ -146,7 +146,8 @@ void run(const CalibrateArguments& arguments) {
   if (arguments.recheck) return recheck_machine(arguments, console);
   const Calibration calibration = watched(arguments, "measuring this machine",
                                           [&] { return measure_machine(effort_of(arguments.seconds)); });
-  if (const std::string doubt = reason_to_doubt(calibration.steadiness); !doubt.empty()) console.warn(doubt);
+  if (const std::string doubt = reason_to_doubt(calibration.steadiness); !doubt.empty())
+    console.warn(doubt + "; calibrate again when it is idle");
   std::string file;
   try {
     file = save_calibration(calibration).string();

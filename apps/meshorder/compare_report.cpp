@@ -13,13 +13,13 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace meshorder::command {
 namespace {
@@ -50,7 +50,7 @@ struct Column {
   std::string title;
   std::vector<TimeRatio> ratios;
   double again = 1;  ///< ratio of two times of the file's own order: the noise
-  double best = 0;   ///< largest ratio of the orders
+  double best = 1;   ///< largest ratio of the orders that are told apart, at least 1
 };
 
 Column column(std::string title, const KernelTable& table,
@@ -66,16 +66,11 @@ Column column(std::string title, const KernelTable& table,
   return result;
 }
 
-/// Returns the geometric mean over the kernels; its interval is the mean of theirs.
+/// Returns the geometric mean over the kernels.
 TimeRatio mean_gain(const OrderTimes& times, std::span<const Kernel> kernels) {
-  TimeRatio sums{0, 0, 0};
-  for (const Kernel kernel : kernels) {
-    sums.ratio += std::log(times[kernel].gain.ratio);
-    sums.low += std::log(times[kernel].gain.low);
-    sums.high += std::log(times[kernel].gain.high);
-  }
-  const auto count = static_cast<double>(kernels.size());
-  return {std::exp(sums.ratio / count), std::exp(sums.low / count), std::exp(sums.high / count)};
+  std::vector<TimeRatio> gains;
+  for (const Kernel kernel : kernels) gains.push_back(times[kernel].gain);
+  return geometric_mean(gains);
 }
 
 /// Returns a column for each kernel. For a mesh, a column for the geometric mean of all kernels comes first.

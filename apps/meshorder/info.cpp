@@ -114,7 +114,7 @@ std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh
                                 const Stopwatch& since_start) {
   AdviceOptions options;
   options.machine = machine;
-  options.patterns = false;
+  options.describe = false;
   if (arguments.all_threads) options.threads = thread_count();
   if (!arguments.caches.empty()) options.caches = parse_caches(arguments.caches);
   options.graph_seconds = graph_seconds;

@@ -71,7 +71,7 @@ void print_next(const Console& console, const Advice& advice, const std::string&
 
 void print_times(const Console& console, const Advice& advice) {
   const bool predicted = advice.as_is.costs.predicted.has_value();
-  const bool measured = advice.as_is.costs.measured && advice.doubt.empty();
+  const bool measured = is_measured(advice);
   if (!predicted && !measured) return;
   console.print("\n{}, and how many times faster {} in another,\n{}",
                 advice.is_matrix
@@ -148,9 +148,9 @@ nlohmann::ordered_json to_json(const Advice& advice) {
     orders.push_back(order);
   }
   return {{"sentence", to_string(advice)},
-          {"by", advice.as_is.costs.measured && advice.doubt.empty() ? "measurement"
-                 : advice.as_is.costs.predicted                      ? "prediction"
-                                                                     : "nothing"},
+          {"by", is_measured(advice)            ? "measurement"
+                 : advice.as_is.costs.predicted ? "prediction"
+                                                : "nothing"},
           {"reliable", advice.doubt.empty()},
           {"doubt", or_null(advice.doubt)},
           {"machine", or_null(advice.machine)},

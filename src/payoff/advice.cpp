@@ -125,9 +125,6 @@ TimeRatio with_error(double as_is, double ordered, double error) {
   return {ratio, ratio / error, ratio * error};
 }
 
-/// Returns whether measured times decide: they are there, and they are reliable.
-bool by_clock(const Advice& advice) { return advice.as_is.costs.measured && advice.doubt.empty(); }
-
 /// Keeps `most` candidates in their present sequence: the first one and the best of the others.
 void keep_best(Advice& advice, Orders& orders, Workload workload, std::size_t most) {
   std::vector<std::size_t> places(advice.candidates.size());
@@ -199,14 +196,20 @@ void add_candidates(Advice& advice, Orders& orders, const Mesh& mesh, const Advi
   }
 }
 
-/// Adds the spans of all orders and, if asked for, their patterns.
-void describe(Advice& advice, const Orders& orders, bool with_patterns) {
+/// Adds the spans of all orders, and their patterns if `is_whole`; else only means of spans.
+void describe(Advice& advice, const Orders& orders, bool is_whole) {
   std::vector<Candidate> described(orders.all.size());
   take_turns(index_size(orders.all), [&](Index i) {
     const CsrGraph& graph = orders.all[i].graph();
     const Permutation as_ordered = Permutation::identity(graph.size());
-    described[i].spans = quality_of(graph, as_ordered);
-    if (with_patterns) described[i].pattern = pattern_of(graph, as_ordered, kPatternSide);
+    if (is_whole) {
+      described[i].spans = quality_of(graph, as_ordered);
+      described[i].pattern = pattern_of(graph, as_ordered, kPatternSide);
+    } else {
+      const EdgeSpan span = edge_span(graph, as_ordered);
+      described[i].spans.mean_span = span.mean;
+      described[i].spans.mean_log2_span = span.mean_log2;
+    }
   });
   for_candidates(advice, orders, [&](Candidate& candidate, std::size_t order) {
     candidate.spans = described[order].spans;
@@ -242,8 +245,21 @@ void measure(Advice& advice, const Orders& orders, const AdviceOptions& options,
 
 }  // namespace
 
+bool is_measured(const Advice& advice) { return advice.as_is.costs.measured && advice.doubt.empty(); }
+
+TimeRatio geometric_mean(std::span<const TimeRatio> ratios) {
+  TimeRatio sums{0, 0, 0};
+  for (const TimeRatio& ratio : ratios) {
+    sums.ratio += std::log(ratio.ratio);
+    sums.low += std::log(ratio.low);
+    sums.high += std::log(ratio.high);
+  }
+  const auto count = static_cast<double>(ratios.size());
+  return {std::exp(sums.ratio / count), std::exp(sums.low / count), std::exp(sums.high / count)};
+}
+
 TimeRatio measured_gain(const Advice& advice, const Candidate& candidate, std::size_t kernel) {
-  if (!by_clock(advice)) return {};
+  if (!is_measured(advice)) return {};
   if (candidate.costs.gains) return (*candidate.costs.gains)[kernel];
   return with_error((*advice.as_is.costs.measured)[kernel], (*candidate.costs.measured)[kernel],
                     same_time(advice, kKernels[kernel]));
@@ -256,25 +272,20 @@ TimeRatio predicted_gain(const Advice& advice, const Candidate& candidate, std::
 }
 
 TimeRatio gain_of(const Advice& advice, const Candidate& candidate, std::size_t kernel) {
-  return by_clock(advice) ? measured_gain(advice, candidate, kernel)
-                          : predicted_gain(advice, candidate, kernel);
+  return is_measured(advice) ? measured_gain(advice, candidate, kernel)
+                             : predicted_gain(advice, candidate, kernel);
 }
 
 TimeRatio gain_for(Workload workload, const Advice& advice, std::size_t candidate) {
-  TimeRatio sums{0, 0, 0};
-  int kernels = 0;
+  std::vector<TimeRatio> gains;
   for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
-    if (workload != Workload::all && to_string(workload) != to_string(kKernels[k])) continue;
-    const TimeRatio of_kernel = gain_of(advice, advice.candidates[candidate], k);
-    sums.ratio += std::log(of_kernel.ratio);
-    sums.low += std::log(of_kernel.low);
-    sums.high += std::log(of_kernel.high);
-    ++kernels;
+    if (workload == Workload::all || to_string(workload) == to_string(kKernels[k]))
+      gains.push_back(gain_of(advice, advice.candidates[candidate], k));
   }
-  if (kernels == 0) {
+  if (gains.empty()) {
     throw InvalidArgument(fmt::format("advice: no kernel measures {}", to_string(workload)));
   }
-  return {std::exp(sums.ratio / kernels), std::exp(sums.low / kernels), std::exp(sums.high / kernels)};
+  return geometric_mean(gains);
 }
 
 std::optional<std::size_t> winner_for(Workload workload, const Advice& advice) {
@@ -297,7 +308,7 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   orders.all.emplace_back(mesh, graph);
   advice.is_matrix = orders.all.front().is_matrix();
   add_candidates(advice, orders, mesh, options);
-  describe(advice, orders, options.patterns);
+  describe(advice, orders, options.describe);
   if (options.predict) predict(advice, orders, options);
   if (options.race_of > 0) keep_best(advice, orders, options.ordering.workload, options.race_of);
   advice.floor = options.machine.floor;
@@ -318,7 +329,7 @@ int runs_in_time_step(const Advice& advice, std::size_t kernel) {
 
 double same_time(const Advice& advice, Kernel kernel) {
   const double floor = advice.floor[static_cast<std::size_t>(kernel)];
-  const bool of_this_machine = by_clock(advice) || floor > 0;
+  const bool of_this_machine = is_measured(advice) || floor > 0;
   const double of_another = kernel == Kernel::spmv ? 1.25 : 1.1;
   return std::max(of_this_machine ? 1.05 : of_another, 1 + floor);
 }
@@ -343,7 +354,7 @@ double saved_ms(const Advice& advice, std::size_t candidate, std::size_t kernel)
 
 double known_ms(const Advice& advice, std::size_t kernel) {
   const OrderCosts& costs = advice.as_is.costs;
-  return by_clock(advice) || !costs.predicted ? (*costs.measured)[kernel] : (*costs.predicted)[kernel];
+  return is_measured(advice) || !costs.predicted ? (*costs.measured)[kernel] : (*costs.predicted)[kernel];
 }
 
 double steps_to_pay(const Advice& advice, std::size_t candidate) {

@@ -43,7 +43,7 @@ struct AdviceOptions {
   double graph_seconds = 0;  ///< time that building the vertex graph took
   bool predict = true;
   bool predict_in_doubt = false;  ///< predict if the measured times are unreliable
-  bool patterns = true;           ///< set the patterns of all candidates
+  bool describe = true;           ///< set all spans and patterns of the candidates; else only the means
   bool for_springs_too = true;    ///< add a candidate for springs if `auto` chooses another method for them
   std::optional<int> halvings =
       {};  ///< reuse is estimated from 2^-halvings of the lines; unset: `halvings_for`
@@ -64,6 +64,12 @@ struct AdviceOptions {
 /// race without predictions, for predictions of tuned kernels, and if the costs are those of another number
 /// of threads.
 Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options = {});
+
+/// Returns whether measured times decide: there are some, and they are reliable.
+bool is_measured(const Advice& advice);
+
+/// Returns the geometric mean of ratios; its interval is the mean of theirs.
+TimeRatio geometric_mean(std::span<const TimeRatio> ratios);
 
 /// Returns the factor by which predicted times may be wrong. It is 1.05 for the machine's own calibration.
 /// For the costs of another machine it is 1.1, and 1.25 for SpMV: measurements did not confirm smaller

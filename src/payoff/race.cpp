@@ -24,13 +24,9 @@ std::vector<MeshMethods> contenders(const Mesh& mesh) {
   return result;
 }
 
-bool is_predicted(const Race& race) {
-  return !race.advice.as_is.costs.measured || !race.advice.doubt.empty();
-}
-
 std::string reason_for(const Race& race) {
   const std::size_t timed = race.factors.size();
-  if (is_predicted(race)) {
+  if (!is_measured(race.advice)) {
     if (!race.winner) {
       return fmt::format(
           "for {}, no order is predicted to be faster than the file's by more than the error of predictions",
@@ -84,8 +80,8 @@ Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options) {
 
 void give_reasons(const Race& race, MeshOrder& order) {
   order.vertices.method.reason = race.reason;
-  order.cells.method.reason =
-      fmt::format("{} together with the order of the vertices", is_predicted(race) ? "predicted" : "timed");
+  order.cells.method.reason = fmt::format("{} together with the order of the vertices",
+                                          is_measured(race.advice) ? "timed" : "predicted");
 }
 
 }  // namespace meshorder

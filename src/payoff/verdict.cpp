@@ -57,9 +57,6 @@ std::string losses(const Advice& advice, std::size_t candidate) {
   return words;
 }
 
-/// Returns whether measured times decide.
-bool is_measured(const Advice& advice) { return advice.as_is.costs.measured && advice.doubt.empty(); }
-
 /// Returns "measured here on 2 threads" or "predicted for zen3".
 std::string source_of(const Advice& advice) {
   return is_measured(advice) ? "measured here" + on_threads(advice.threads)

@@ -217,7 +217,7 @@ TEST(Advice, OfAMatrixIsOnProductsAlone) {
   const Mesh mesh = scrambled_band(60'000);
   AdviceOptions options;
   options.machine = choose_machine("zen3");
-  options.patterns = false;
+  options.describe = false;
   const Advice advice = advise(mesh, vertex_graph(mesh), options);
   ASSERT_TRUE(advice.is_matrix);
   ASSERT_EQ(advice.candidates.size(), 1U);
