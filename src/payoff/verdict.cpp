@@ -106,7 +106,7 @@ OrderGrade grade_of(const Quality& as_is, const Quality& ordered, Index vertices
   const double random = std::log2(std::max<double>(2, vertices)) - 1.5 / std::numbers::ln2;
   const double way = random - ordered.mean_log2_span;
   const double gone = as_is.mean_log2_span - ordered.mean_log2_span;
-  if (gone <= kGood * way) return OrderGrade::good;
+  if (gone <= std::max(0.0, kGood * way)) return OrderGrade::good;
   return gone <= kFair * way ? OrderGrade::fair : OrderGrade::poor;
 }
 

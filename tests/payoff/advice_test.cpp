@@ -316,6 +316,13 @@ TEST(Grade, ComparesTheSpansWithARandomOrderAndABetterOne) {
   EXPECT_EQ(graded(10.8), "poor");
 }
 
+TEST(Grade, OfASmallMeshIsGoodIfNoOrderIsNearer) {
+  // the mean of a random order of 5 vertices is taken as 0.16, less than that of any order
+  for (const double mean_log2 : {0.2, 0.5}) {
+    EXPECT_EQ(grade_of({.mean_log2_span = mean_log2}, {.mean_log2_span = 0.5}, 5), OrderGrade::good);
+  }
+}
+
 TEST(Comparison, NamesTheBestOrderOfAllKernelsOrOfOne) {
   const TimeRatio twice{2, 1.95, 2.05};
   const Advice advice = timed({twice, twice, twice, twice}, {kSame, kSame, kSame, TimeRatio{4, 3.9, 4.1}});
