@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <span>
 #include <string>
 #include <vector>
@@ -91,6 +92,20 @@ inline void throw_unless_ok(mo_status status) {
   if (status != MO_OK) throw Error(static_cast<Code>(status), mo_mpi_last_error());
 }
 
+/// Calls `allocate` on this rank; throws Error on all ranks if it throws on any rank. Otherwise a rank
+/// without memory would leave the others waiting for it.
+template <class Allocate>
+void allocate_together(MPI_Comm communicator, const Allocate& allocate) {
+  int lacks = 0;
+  try {
+    allocate();
+  } catch (const std::exception&) {
+    lacks = 1;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &lacks, 1, MPI_INT, MPI_MAX, communicator);
+  if (lacks != 0) throw Error(Code::internal, "a rank lacks memory for the result");
+}
+
 }  // namespace detail
 
 /// Orders each rank's vertices among themselves: vertices stay with their owners. A rank's order begins near
@@ -108,8 +123,10 @@ inline RankOrder order_ranks(MPI_Comm communicator, const RankMesh& mesh, const 
   const mo_mpi_mesh given = detail::to_c(mesh);
   const mo_mpi_options wanted = detail::to_c(options);
   RankOrder order;
-  order.new_numbers.resize(detail::room_for(mesh.vertex_count));
-  order.cell_order.resize(static_cast<std::size_t>(given.cell_count));
+  detail::allocate_together(communicator, [&] {
+    order.new_numbers.resize(detail::room_for(mesh.vertex_count));
+    order.cell_order.resize(static_cast<std::size_t>(given.cell_count));
+  });
   detail::throw_unless_ok(mo_mpi_order_ranks(MPI_Comm_c2f(communicator), &given, &wanted,
                                              order.new_numbers.data(), order.cell_order.data()));
   return order;
@@ -134,9 +151,11 @@ inline PartOrder order_parts(MPI_Comm communicator, const RankMesh& mesh, const 
   MPI_Allreduce(&mesh.vertex_count, &vertices, 1, MPI_INT64_T, MPI_SUM, communicator);
   if (options.parts > 0) parts = std::min(parts, vertices);  // more parts than vertices are refused
   PartOrder order;
-  order.new_numbers.resize(detail::room_for(mesh.vertex_count));
-  order.part_starts.resize(detail::room_for(parts) + 1);
-  order.cell_parts.resize(static_cast<std::size_t>(given.cell_count));
+  detail::allocate_together(communicator, [&] {
+    order.new_numbers.resize(detail::room_for(mesh.vertex_count));
+    order.part_starts.resize(detail::room_for(parts) + 1);
+    order.cell_parts.resize(static_cast<std::size_t>(given.cell_count));
+  });
   detail::throw_unless_ok(mo_mpi_order_parts(MPI_Comm_c2f(communicator), &given, &wanted,
                                              order.new_numbers.data(), order.part_starts.data(),
                                              order.cell_parts.data()));

@@ -196,7 +196,11 @@ TEST(RankMeshes, AFaultOfOneRankIsReportedOnAll) {
   mesh.vertex_count = -1;
   expect_fault(mesh, "vertex_count: -1");
   mesh.vertex_count = std::numeric_limits<std::int64_t>::max();
-  // by the C function: the C++ one would fail to allocate the result before it calls the library
+  // the C++ functions cannot allocate the result, and say so on all ranks
+  expect_error([&] { (void)order_ranks(MPI_COMM_WORLD, is_last ? mesh : solver.view()); }, Code::internal,
+               "a rank lacks memory");
+  expect_error([&] { (void)order_parts(MPI_COMM_WORLD, is_last ? mesh : solver.view()); }, Code::internal,
+               "a rank lacks memory");
   expect_error(
       [&] {
         const mo_mpi_mesh given = detail::to_c(is_last ? mesh : solver.view());

@@ -55,13 +55,14 @@ std::vector<Index> bisected(const Communicator& communicator, const GlobalGraph&
   const GlobalIndex first = graph.layout.begin(communicator.rank());
   const auto own_count = static_cast<std::size_t>(graph.rows.size());
   const bool is_weighted = communicator.sum(static_cast<GlobalIndex>(weights.size())) > 0;
-  const std::vector<GlobalIndex> of_vertices = is_weighted ? weights : std::vector<GlobalIndex>(own_count, 1);
-  std::vector<Index> piece_of(own_count, 0);
+  const std::vector<GlobalIndex> of_vertices =
+      communicator.together([&] { return is_weighted ? weights : std::vector<GlobalIndex>(own_count, 1); });
+  std::vector<Index> piece_of = communicator.together([&] { return std::vector<Index>(own_count, 0); });
   // for each part: the number of parts in the piece that begins with this part; 0 if there is no such piece
   std::vector<Index> parts_of(static_cast<std::size_t>(parts), 0);
   parts_of[0] = parts;
   while (*std::max_element(parts_of.begin(), parts_of.end()) > 1) {
-    const HaloValues<Index> pieces(halo, first, piece_of);
+    const HaloValues<Index> pieces(halo, first, communicator.together([&] { return piece_of; }));
     const GlobalGraph within = communicator.together([&] { return within_pieces(graph, pieces); });
     const std::vector<GlobalIndex> numbers =
         fiedler_order(communicator, within, halo, number_in_file, options).new_numbers;

@@ -141,7 +141,8 @@ SharedLevel finest_level(const Communicator& communicator, const GlobalGraph& gr
                          const std::vector<Index>& members) {
   const int rank = communicator.rank();
   const Layout layout = Layout::of_sizes(communicator.gathered(std::ssize(members)));
-  std::vector<GlobalIndex> row_of(static_cast<std::size_t>(graph.rows.size()), -1);
+  std::vector<GlobalIndex> row_of = communicator.together(
+      [&] { return std::vector<GlobalIndex>(static_cast<std::size_t>(graph.rows.size()), -1); });
   for (std::size_t k = 0; k < members.size(); ++k)
     row_of[static_cast<std::size_t>(members[k])] = layout.begin(rank) + static_cast<GlobalIndex>(k);
   const HaloValues<GlobalIndex> row_with_ghosts(ghosts, graph.layout.begin(rank), std::move(row_of));

@@ -38,10 +38,12 @@ std::vector<char> are_elements(const Communicator& communicator, const std::vect
   int highest = -1;
   for (const Shape shape : shapes) highest = std::max(highest, dimension(shape));
   for (const int other : communicator.gathered(highest)) highest = std::max(highest, other);
-  std::vector<char> result(shapes.size());
-  std::transform(shapes.begin(), shapes.end(), result.begin(),
-                 [&](Shape shape) { return dimension(shape) == highest; });
-  return result;
+  return communicator.together([&] {
+    std::vector<char> result(shapes.size());
+    std::transform(shapes.begin(), shapes.end(), result.begin(),
+                   [&](Shape shape) { return dimension(shape) == highest; });
+    return result;
+  });
 }
 
 }  // namespace meshorder::distributed

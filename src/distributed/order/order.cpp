@@ -107,8 +107,8 @@ PartOrders in_parts(const Communicator& communicator, const GlobalGraph& graph, 
 
   std::vector<Index> places = std::move(partition.part_of);
   {
-    const Quotient quotient =
-        order_of_parts(communicator, graph, HaloValues<Index>(halo, first, places), report.parts);
+    const HaloValues<Index> part_of(halo, first, communicator.together([&] { return places; }));
+    const Quotient quotient = order_of_parts(communicator, graph, part_of, report.parts);
     report.cut = quotient.cut;
     for (Index& part : places) part = quotient.place_of[static_cast<std::size_t>(part)];
   }
@@ -203,18 +203,19 @@ DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
   const GlobalIndex first = graph.layout.begin(rank);
   stages.end("graph");
 
-  const PartOrders parts =
-      options.partitioner == Partitioner::order
-          ? in_one_order(communicator, graph, halo, curve->number_in_file, options, report)
-          : in_parts(communicator, graph, halo, *curve, weights, options, report, stages);
+  PartOrders parts = options.partitioner == Partitioner::order
+                         ? in_one_order(communicator, graph, halo, curve->number_in_file, options, report)
+                         : in_parts(communicator, graph, halo, *curve, weights, options, report, stages);
   report.ghosts = parts.ghosts;
   report.part_starts = parts.starts;
   report.interfaces = parts.interfaces;
   stages.end("order");
 
   order.new_vertices = numbers_in_file(communicator, slice, *curve, parts.new_numbers);
-  report.before = edge_span(communicator, graph, HaloValues<GlobalIndex>(halo, first, curve->number_in_file));
-  report.after = edge_span(communicator, graph, HaloValues<GlobalIndex>(halo, first, parts.new_numbers));
+  report.before =
+      edge_span(communicator, graph, HaloValues<GlobalIndex>(halo, first, std::move(curve->number_in_file)));
+  report.after =
+      edge_span(communicator, graph, HaloValues<GlobalIndex>(halo, first, std::move(parts.new_numbers)));
   {
     const Halo of_cells(communicator, slice.vertices, slice.cell_vertices.entries);
     renumber(slice.cell_vertices, of_cells, of_cells.fetch(order.new_vertices));

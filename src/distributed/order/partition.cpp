@@ -64,7 +64,8 @@ std::string too_small(const GlobalGraph& graph, Index parts) {
 /// Returns the number of edges between parts.
 GlobalIndex cut_between(const Communicator& communicator, const GlobalGraph& graph, const Halo& halo,
                         const std::vector<Index>& part_of) {
-  const HaloValues<Index> parts(halo, graph.layout.begin(communicator.rank()), part_of);
+  const HaloValues<Index> parts(halo, graph.layout.begin(communicator.rank()),
+                                communicator.together([&] { return part_of; }));
   GlobalIndex entries = 0;
   for (Offset row = 0; row < graph.rows.size(); ++row) {
     const auto neighbours = graph.rows[row];
