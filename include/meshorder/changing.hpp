@@ -26,7 +26,7 @@ inline namespace v0_3 {
 /// How an update found its order, the cheapest first.
 enum class Repair : std::uint8_t {
   none,     ///< nothing moves
-  carried,  ///< vertices that stayed keep their order, new ones come next to their neighbours
+  carried,  ///< vertices that stayed keep their order, new ones come next to their neighbours or last
   warm,     ///< computed again from the last Fiedler vector, to 30 times the tolerance
   fresh,    ///< computed again from the start
 };
@@ -102,7 +102,9 @@ class MESHORDER_API Reorderer {
   ///       method.
   Update update(const GraphView& graph, const PointsView& points = {}, const IndexView& previous = {});
 
-  /// The same for a mesh. Builds the mesh's graph only to compute an order anew.
+  /// The same for a mesh. Builds the mesh's graph only to compute an order anew, and not for `hilbert` and
+  /// `morton`. With these two, new vertices come last until `slack` is exceeded; then the points are sorted
+  /// anew: O(n + cells).
   Update update(const MeshView& mesh, const IndexView& previous = {});
 
   /// The same for points alone, such as particles, by `hilbert` or `morton`.

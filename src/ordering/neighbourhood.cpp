@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -68,6 +69,12 @@ bool reads_forward(const GraphRef& graph) {
   return sampled_jump_share(graph, Permutation::identity(graph.size())) < kFew;
 }
 
+NeighbourRows empty_rows(std::size_t count) {
+  NeighbourRows rows;
+  rows.offsets.resize(count + 1);
+  return rows;
+}
+
 }  // namespace
 
 double GraphNeighbourhood::span_log2(std::span<const Index> place_of) const {
@@ -117,6 +124,7 @@ double CellNeighbourhood::span_log2(std::span<const Index> place_of) const {
 }
 
 NeighbourRows CellNeighbourhood::rows_of(std::span<const Index> vertices) const {
+  if (by_curve_) return empty_rows(vertices.size());
   std::vector<Index> number_of(static_cast<std::size_t>(size()), -1);
   for (std::size_t k = 0; k < vertices.size(); ++k)
     number_of[static_cast<std::size_t>(vertices[k])] = static_cast<Index>(k);
@@ -153,7 +161,16 @@ const CsrGraph& CellNeighbourhood::graph() {
 }
 
 Order CellNeighbourhood::order_by(std::string_view method, const OrderOptions& options) {
-  return order_vertices_by_options(method, {graph(), points_}, options);
+  if (!by_curve_) return order_vertices_by_options(method, {graph(), points_}, options);
+  // of the graph, only which vertices have no neighbours matters: they come last
+  std::vector<Offset> offsets(static_cast<std::size_t>(size()) + 1);
+  const IncidenceRef cells = cells_.incidence();
+  for (Index c = 0; c < cells.size(); ++c) {
+    if (cells[c].size() < 2) continue;
+    for (const Index v : cells[c]) offsets[static_cast<std::size_t>(v) + 1] = 1;
+  }
+  std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
+  return order_graph(method, {{offsets, {}}, points_}, options);
 }
 
 bool CellNeighbourhood::is_read_forward() { return reads_forward(graph()); }
@@ -189,9 +206,7 @@ double PointNeighbourhood::most_span(double fresh, double slack) const {
 }
 
 NeighbourRows PointNeighbourhood::rows_of(std::span<const Index> vertices) const {
-  NeighbourRows rows;
-  rows.offsets.resize(vertices.size() + 1);
-  return rows;
+  return empty_rows(vertices.size());
 }
 
 Order PointNeighbourhood::order_by(std::string_view method, const OrderOptions& options) {

@@ -58,7 +58,10 @@ class GraphNeighbourhood : public Neighbourhood {
 /// or `is_read_forward`.
 class CellNeighbourhood : public Neighbourhood {
  public:
-  CellNeighbourhood(const CellArrays& cells, const PointsView& points) : cells_(cells), points_(points) {}
+  /// @param by_curve  the method is a curve, which needs no graph. New vertices have no neighbours then: to
+  ///                  find them costs more than the order
+  CellNeighbourhood(const CellArrays& cells, const PointsView& points, bool by_curve)
+      : cells_(cells), points_(points), by_curve_(by_curve) {}
 
   [[nodiscard]] Index size() const override { return cells_.vertex_count; }
   [[nodiscard]] double span_log2(std::span<const Index> place_of) const override;
@@ -72,6 +75,7 @@ class CellNeighbourhood : public Neighbourhood {
 
   const CellArrays& cells_;
   const PointsView& points_;
+  bool by_curve_;
   std::optional<CsrGraph> graph_;
 };
 

@@ -74,6 +74,9 @@ class Reorderer::Inside {
 
   [[nodiscard]] const OrderOptions& order() const { return options_.order; }
   [[nodiscard]] const std::string& method() const { return options_.method; }
+  [[nodiscard]] bool by_curve() const { return options_.method == "hilbert" || options_.method == "morton"; }
+  /// Returns whether the budget allows another order without a start vector.
+  [[nodiscard]] bool may_order() const { return memory_.fresh_seconds <= options_.budget_seconds; }
 
   Update update(Neighbourhood& hood, const IndexView& previous) {
     const Stopwatch stopwatch;
@@ -251,7 +254,7 @@ Update Reorderer::update(const MeshView& mesh, const IndexView& previous) {
     const std::size_t n = vertex_count_of(mesh);
     const CellArrays cells = cell_arrays(mesh.cells, n, options.check);
     check_finite(mesh.points, n, options.check);
-    CellNeighbourhood hood(cells, mesh.points);
+    CellNeighbourhood hood(cells, mesh.points, inside_->by_curve() && inside_->may_order());
     return inside_->update(hood, previous);
   });
 }
@@ -260,7 +263,7 @@ Update Reorderer::update(const PointsView& points, const IndexView& previous) {
   const OrderOptions& options = inside_->order();
   return in_call(options.run, [&] {
     const std::string& method = inside_->method();
-    if (method != "auto" && method != "hilbert" && method != "morton")
+    if (method != "auto" && !inside_->by_curve())
       throw InvalidArgument("method: '" + method +
                             "' needs a graph or cells; of points alone there are hilbert and morton");
     check_finite(points, points.size(), options.check);

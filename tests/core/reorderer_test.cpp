@@ -201,6 +201,58 @@ TEST(Reorderer, PutsNewVerticesOfAMeshBetweenThoseOfTheirCells) {
   EXPECT_EQ(next.permutation.old_to_new()[12], 5) << "after the first of its two neighbours";
 }
 
+/// The edges of the cloud's graph as cells.
+std::vector<std::array<Index, 2>> lines_of(const Cloud& cloud) {
+  const CsrGraph graph = cloud.graph(0.1);
+  std::vector<std::array<Index, 2>> lines;
+  for (Index v = 0; v < graph.size(); ++v) {
+    for (const Index u : graph[v]) {
+      if (u < v) lines.push_back({u, v});
+    }
+  }
+  return lines;
+}
+
+Update updated_cells(Reorderer& reorderer, Cloud& cloud, const std::vector<std::array<Index, 2>>& lines) {
+  Update update =
+      reorderer.update(MeshView{cloud.points(), CellsView::uniform(Shape::line, 2, lines)}, cloud.previous());
+  cloud.follow(update);
+  return update;
+}
+
+TEST(Reorderer, SortsThePointsOfCellsAnewWhereVerticesComeAndGo) {
+  for (const char* const method : {"hilbert", "morton"}) {
+    Cloud cloud(800);
+    Reorderer reorderer({.method = method});
+    for (int i = 0; i < 8; ++i) {
+      const Permutation sorted = Reorderer({.method = method}).update(PointsView(cloud.points())).permutation;
+      const Update update = updated_cells(reorderer, cloud, lines_of(cloud));
+      EXPECT_EQ(update.repair, Repair::fresh) << update.reason;
+      EXPECT_EQ(update.permutation, sorted) << method;
+      cloud.churn(40);
+    }
+  }
+}
+
+TEST(Reorderer, LeavesAFewNewVerticesOfCellsLastInOrdersAlongACurve) {
+  Cloud cloud(800);
+  Reorderer reorderer({.method = "hilbert"});
+  (void)updated_cells(reorderer, cloud, lines_of(cloud));
+  cloud.churn(1);
+  const Update update = updated_cells(reorderer, cloud, lines_of(cloud));
+  EXPECT_EQ(update.repair, Repair::none) << update.reason;
+  EXPECT_EQ(update.added, 1);
+}
+
+TEST(Reorderer, PutsVerticesWithoutACellLastInOrdersAlongACurve) {
+  const Cloud cloud(800);
+  std::vector<std::array<Index, 2>> lines = lines_of(cloud);
+  std::erase_if(lines, [](const auto& line) { return line[0] < 5 || line[1] > 790; });
+  const MeshView mesh{cloud.points(), CellsView::uniform(Shape::line, 2, lines)};
+  EXPECT_EQ(Reorderer({.method = "hilbert"}).update(mesh).permutation,
+            order_mesh(mesh, {"hilbert", "original"}).vertices.permutation);
+}
+
 TEST(Reorderer, KeepsParticlesAlongTheCurve) {
   Cloud cloud(5000);
   Reorderer reorderer;
@@ -438,6 +490,14 @@ TEST(Reorderer, KeepsTheCarriedOrderWhereTheBudgetAllowsNoOther) {
   EXPECT_EQ(update.repair, Repair::none);
   EXPECT_FALSE(update.complete);
   EXPECT_THAT(update.reason, HasSubstr("more than the budget"));
+}
+
+TEST(Reorderer, FindsTheNeighboursOfNewVerticesWhereTheBudgetAllowsNoSort) {
+  Cloud cloud(800);
+  Reorderer reorderer({.method = "hilbert", .budget_seconds = 0});
+  (void)updated_cells(reorderer, cloud, lines_of(cloud));
+  cloud.churn(1);
+  EXPECT_LT(updated_cells(reorderer, cloud, {{3, 799}}).permutation.old_to_new()[799], 10);
 }
 
 TEST(Reorderer, RenewsSoonerWhereStepsGrowSlower) {
