@@ -94,6 +94,7 @@ def sample_files(tmp_path_factory):
         "mesh.node",
         "mesh.vtu",
         "part.msh",
+        "ball.node",
         "dragon.node",
         "dragon.msh",
         "dragon.veg",
