@@ -24,7 +24,7 @@ namespace meshorder::command {
 namespace {
 
 constexpr std::size_t kLongestLine = 10'000;
-constexpr std::string_view kSeparators = " \t\r,;";
+constexpr std::string_view kSeparators = "\r,;";
 
 /// Calls `use` with each line of a text, cut after `kLongestLine` characters.
 template <class Use>

@@ -300,8 +300,11 @@ std::string find_program(const std::string& name) {
   const char* const path = std::getenv("PATH");
   std::string_view folders = path == nullptr ? "/usr/bin:/bin" : path;
   while (!name.empty() && !folders.empty()) {
-    const fs::path candidate = fs::path(next_word(folders, ":")) / name;
-    if (is_executable(candidate)) return fs::absolute(candidate).lexically_normal().string();
+    const std::string_view folder = folders.substr(0, folders.find(':'));
+    folders.remove_prefix(std::min(folder.size() + 1, folders.size()));
+    const fs::path candidate = fs::path(folder) / name;
+    if (!folder.empty() && is_executable(candidate))
+      return fs::absolute(candidate).lexically_normal().string();
   }
   throw InvalidArgument(fmt::format(
       "{}: no folder of PATH has this program; write ./{} for a program in this folder", name, name));

@@ -44,20 +44,22 @@ std::string join(const Texts& texts, std::string_view separator = ", ") {
       texts, [](const auto& text) -> const auto& { return text; }, separator);
 }
 
-/// Returns `text` without spaces and tabs at its ends.
+/// Returns whether `c` is a blank within a line, as in C: a space, tab, form feed or vertical tab.
+constexpr bool is_blank(char c) { return c == ' ' || (c < ' ' && (c == '\t' || c == '\f' || c == '\v')); }
+
+/// Returns `text` without blanks at its ends.
 inline std::string_view trimmed(std::string_view text) {
-  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
   return text;
 }
 
-/// Removes the next word from the front of `line` and returns the word, without separators; empty if no word
-/// is left.
-inline std::string_view next_word(std::string_view& line, std::string_view separators = " \t") {
-  // words and separators are short: a loop is faster than the functions of string_view, which call memchr
+/// Removes the next word from the front of `line` and returns the word; empty if no word is left. Words are
+/// separated by blanks and by the characters of `marks`.
+inline std::string_view next_word(std::string_view& line, std::string_view marks = {}) {
+  // words and marks are short: a loop is faster than the functions of string_view, which call memchr
   const auto separates = [&](char c) {
-    return std::any_of(separators.begin(), separators.end(), [c](char separator) { return c == separator; });
+    return is_blank(c) || std::any_of(marks.begin(), marks.end(), [c](char mark) { return c == mark; });
   };
   const char* const end = line.data() + line.size();
   const char* const begin = std::find_if_not(line.data(), end, separates);

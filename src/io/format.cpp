@@ -150,7 +150,7 @@ bool is_deck(std::string_view word, std::string_view rest) {
       rest.remove_prefix(std::min(rest.find_first_of("\r\n"), rest.size() - 1) + 1);
     }
     if (rest.empty()) return false;
-    word = next_word(rest, " \t\r\n");
+    word = next_word(rest, "\r\n");
   }
   return !is_one_of(kOfVega);
 }
@@ -165,13 +165,13 @@ bool is_bulk_data(std::string_view bytes) {
     const std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));
     bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));
     std::string_view rest = line;
-    const std::string_view word = next_word(rest, " \t,");
+    const std::string_view word = next_word(rest, ",");
     if (word.empty() || word.starts_with('$')) continue;
     if (is_first && std::any_of(kWords.begin(), kWords.end(),
                                 [&](std::string_view known) { return same_but_for_case(known, word); })) {
       return true;
     }
-    if (same_but_for_case(word, "BEGIN") && same_but_for_case(next_word(rest, " \t,"), "BULK")) return true;
+    if (same_but_for_case(word, "BEGIN") && same_but_for_case(next_word(rest, ","), "BULK")) return true;
     is_first = false;
   }
   return false;

@@ -121,6 +121,32 @@ TEST(Format, PassesOverZeroBytesAfterTheText) {
               HasSubstr(":2: the statement '?v' is unknown"));
 }
 
+TEST(Format, SeparatesWordsAtFormFeedsAndVerticalTabsToo) {
+  const TemporaryFolder folder;
+  std::vector<std::string> texts(kTexts.begin(), kTexts.end());
+  texts.insert(texts.end(), {".su2", ".veg", ".mtx", ".graph"});
+  for (const std::string& extension : texts) {
+    const bool is_matrix = extension == ".mtx" || extension == ".graph";
+    const std::filesystem::path plain = folder.path() / ("plain" + extension);
+    const bool is_solid = extension == ".veg" || extension == ".su2";
+    write_mesh(is_matrix  ? test::cells_of_type(Shape::line, 2, 2)
+               : is_solid ? test::cells_of_type(Shape::tetrahedron, 4, 2)
+                          : test::cells_of_type(Shape::triangle, 3, 2),
+               plain);
+    std::string text = test::content_of(plain);
+    if (text.find('\0') != std::string::npos) continue;  // is binary
+    const Mesh expected = read_mesh(plain);
+    for (const char blank : {'\f', '\v'}) {
+      std::ranges::replace(text, ' ', blank);
+      Mesh mesh;
+      EXPECT_NO_THROW(mesh = read_mesh(folder.file("other" + extension, text))) << extension;
+      EXPECT_EQ(mesh.points, expected.points) << extension;
+      EXPECT_EQ(mesh.cells, expected.cells) << extension;
+      std::ranges::replace(text, blank, ' ');
+    }
+  }
+}
+
 TEST(Format, NamesTheFormatOfTheContentWhereTheNameIsThatOfAnother) {
   const TemporaryFolder folder;
   const Mesh mesh = test::cells_of_type(Shape::tetrahedron, 4, 2);

@@ -17,6 +17,7 @@ namespace meshorder::abaqus {
 namespace {
 
 constexpr std::string_view kEnds = "\r\n";
+constexpr std::string_view kBlanksAndEnds = " \t\f\v\r\n";
 
 /// Returns the bytes of the line at the front, with its end.
 std::string_view first_line(std::string_view text) {
@@ -70,9 +71,9 @@ std::string compact(std::string_view text) {
 }
 
 std::string_view trimmed_of_ends(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  const std::size_t first = text.find_first_not_of(kBlanksAndEnds);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+  return text.substr(first, text.find_last_not_of(kBlanksAndEnds) - first + 1);
 }
 
 /// Returns whether `line`, which follows a keyword line with a comma at its end, has further parameters. Such
@@ -145,7 +146,7 @@ std::string without_parameter(std::string_view lines, std::string_view name) {
     if (parameter_of(pieces[i]).name != name) {
       result.append(",").append(pieces[i]);
     } else if (i + 1 == pieces.size()) {  // the end of the last line stays
-      result += pieces[i].substr(pieces[i].find_last_not_of(" \t\r\n") + 1);
+      result += pieces[i].substr(pieces[i].find_last_not_of(kBlanksAndEnds) + 1);
     }
   }
   return result.append(lines.substr(keyword.size()));

@@ -35,10 +35,13 @@ constexpr std::size_t kShownTypes = 3;
 bool is_comment(std::string_view line) { return line.starts_with("**"); }
 bool is_keyword(std::string_view line) { return line.starts_with('*') && !is_comment(line); }
 
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
 void skip_blanks(std::string_view& line) {
   while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
+}
+
+/// Returns whether no field of a line has a text.
+bool is_empty(std::string_view line) {
+  return std::ranges::all_of(line, [](char c) { return c == ',' || is_blank(c); });
 }
 
 /// Takes the next field of a data line if it is a plain number of type T; otherwise returns false and leaves
@@ -301,7 +304,7 @@ class DeckReader {
         double& x = node.point[static_cast<std::size_t>(node.coordinates)];
         if (!take_plain(line, x) || !std::isfinite(x)) return false;
       }
-      return line.find_first_not_of(" \t,") == std::string_view::npos;
+      return is_empty(line);
     });
     for (const NodeLine& node : std::span(node_lines_).first(static_cast<std::size_t>(count))) {
       add_number(deck_->nodes, node.number, node.line, "node");
@@ -319,7 +322,7 @@ class DeckReader {
       if (k == 2) has_third_coordinate_ = true;
       point[k] = take_coordinate(line);
     }
-    if (line.find_first_not_of(" \t,") != std::string_view::npos) {
+    if (!is_empty(line)) {
       deck_->more_of_nodes.emplace(mesh_.vertex_count(), fmt::format(", {}", trimmed(line)));
     }
     mesh_.points.push_back(point);
@@ -373,7 +376,7 @@ class DeckReader {
         if (vertex < 0) return false;
         cell_of(k)[node_place(kind, given)] = vertex;
       }
-      return line.find_first_not_of(" \t,") == std::string_view::npos;
+      return is_empty(line);
     });
     reserve_cells(count, nodes, bytes_before);
     const std::span read(element_lines_.data(), static_cast<std::size_t>(count));

@@ -56,9 +56,7 @@ std::shared_ptr<Deck> plain_deck(const Mesh& mesh) {
 }
 
 /// Takes the next word of a card and returns it in capitals; a name in quotes may have several words.
-std::string next_word_in_capitals(std::string_view& text) {
-  return upper_case(next_word(text, " \t,=\"\r\n"));
-}
+std::string next_word_in_capitals(std::string_view& text) { return upper_case(next_word(text, ",=\"\r\n")); }
 
 /// Returns a valid name that is not in `taken`, ignoring case, and adds it to `taken`.
 std::string name_for(const std::string& given, std::set<std::string>& taken, NameNumbers& numbers) {
@@ -282,7 +280,8 @@ class DeckWriter {
     const std::string_view keyword = keyword_lines(text);
     std::string_view lines = std::string_view(text).substr(keyword.size());
     while (!lines.empty()) {
-      std::string_view line = next_word(lines, "\r\n");
+      std::string_view line = lines.substr(0, lines.find_first_of("\r\n"));
+      lines.remove_prefix(std::min(line.size() + 1, lines.size()));
       if (trimmed(line).starts_with("**")) comments.append(line).append(deck_.line_end);
       if (line.empty() || trimmed(line).starts_with("**")) continue;
       std::array<std::int64_t, 3> range{0, 0, 1};

@@ -19,11 +19,6 @@ constexpr std::size_t kLineBytes = 64;  // assumed length of a line, to estimate
 
 }  // namespace
 
-DeckLines::OpenFile::OpenFile(const FilePath& file)
-    : path(file),
-      scanner(std::make_unique<Scanner>(file)),
-      has_other_blanks(has_any_of(scanner->all(), "\f\v")) {}
-
 DeckLines::DeckLines(const FilePath& path) : main_(path) {
   files_.emplace_back(path);
   const std::string_view text = at().all();
@@ -56,7 +51,7 @@ Index DeckLines::lines_to_take() {
   constexpr std::size_t kFewBytes = std::size_t{1} << 17;
   OpenFile& file = files_.back();
   const std::int64_t byte = file.scanner->byte();
-  if (byte < file.next_try || file.has_other_blanks) return 0;
+  if (byte < file.next_try) return 0;
   const std::string_view ahead = rest().substr(0, kLineBytes * static_cast<std::size_t>(file.lines_at_once));
   const std::size_t bytes = std::min(ahead.size(), ahead.find('*'));
   if (bytes < kFewBytes) {

@@ -62,11 +62,10 @@ class DeckLines {
   static constexpr Index kMostLines = Index{1} << 18;
 
   struct OpenFile {
-    explicit OpenFile(const FilePath& file);
+    explicit OpenFile(const FilePath& file) : path(file), scanner(std::make_unique<Scanner>(file)) {}
 
     FilePath path;
     std::unique_ptr<Scanner> scanner;
-    bool has_other_blanks;             ///< has form feeds or vertical tabs, which a Scanner skips
     std::int64_t next_try = 0;         ///< `lines_to_take` returns 0 before this byte
     Index lines_at_once = kMostLines;  ///< halved after an irregular line, else doubled again
   };

@@ -56,7 +56,7 @@ std::string_view first_field(std::string_view line) {
 
 bool is_continuation(std::string_view line) {
   if (line.front() == '+' || line.front() == '*' || line.front() == ',') return true;
-  if (line.front() != ' ' && line.front() != '\t') return false;
+  if (!is_blank(line.front())) return false;
   const std::string_view first = first_field(line);
   return first.empty() || first.front() == '+' || first.front() == '*';
 }

@@ -16,15 +16,15 @@ bool begins_with(std::string_view line, std::string_view word) {
   constexpr int kCase = 'a' - 'A';
   if (line.size() < word.size() || (line.front() | kCase) != (word.front() | kCase)) return false;
   if (!same_but_for_case(line.substr(0, word.size()), word)) return false;
-  return line.size() == word.size() ||
-         std::string_view(" \t,=$'\"").find(line[word.size()]) != std::string_view::npos;
+  return line.size() == word.size() || is_blank(line[word.size()]) ||
+         std::string_view(",=$'\"").find(line[word.size()]) != std::string_view::npos;
 }
 
 /// Returns the word after BEGIN; empty for other lines.
 std::string_view word_after_begin(std::string_view line) {
   if (!begins_with(line, "BEGIN")) return {};
   line.remove_prefix(std::string_view("BEGIN").size());
-  return next_word(line, " \t=$");
+  return next_word(line, "=$");
 }
 
 bool begins_bulk(std::string_view line) { return same_but_for_case(word_after_begin(line), "BULK"); }
@@ -46,8 +46,7 @@ bool has_begin_bulk(std::string_view text) {
 bool is_plain(std::string_view line) {
   if (line.ends_with('\r')) line.remove_suffix(1);
   if (line.find('\t') != std::string_view::npos || line.find('\r') != std::string_view::npos) return false;
-  const std::size_t at = std::min(line.find_first_not_of(' '), line.size());
-  const std::string_view word = line.substr(at, 2);
+  const std::string_view word = trimmed(line).substr(0, 2);
   if (word.empty()) return true;
   constexpr std::string_view kFirst = "BbEeIi";  // BEGIN, ENDDATA, INCLUDE
   if (word.front() != 'C' && word.front() != 'c') return kFirst.find(word.front()) == std::string_view::npos;
@@ -171,7 +170,7 @@ void DeckText::include() {
   if (line.starts_with('=')) line = trimmed(line.substr(1));
   const bool is_quoted = line.starts_with('\'') || line.starts_with('"');
   std::string name = is_quoted ? quoted_name(line) : std::string(line.substr(0, line.find('$')));
-  name.erase(name.find_last_not_of(" \t") + 1);
+  name.erase(name.find_last_not_of(" \t\f\v") + 1);
   (void)lines_.take();
   if (name.empty()) lines_.fail(number, "the name of a file is missing", "write INCLUDE 'FILE'");
   lines_.include(name, number);

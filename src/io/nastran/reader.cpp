@@ -326,12 +326,12 @@ class DeckReader {
       begin = end + 1;
       line = line.substr(0, line.find('$'));
       std::string_view rest = line;
-      const std::string_view word = next_word(rest, " \t=");
+      const std::string_view word = next_word(rest, "=");
       const bool is_curve = word.size() > 1 && same_but_for_case(word.substr(0, 2), "XY");
       if (names_grid_point(line)) add(shown(word.substr(0, word.find('('))), byte);
       const bool goes_on = in_set;
       const bool is_set = word.size() == 3 && same_but_for_case(word, "SET");
-      if (is_set) (void)next_word(rest, " \t=");  // the number of the set
+      if (is_set) (void)next_word(rest, "=");  // the number of the set
       in_set = (is_set || in_set) && trimmed(line).ends_with(',');
       if (!is_set && !goes_on && !is_curve) continue;
       if (is_curve || names_items(goes_on && !is_set ? line : rest)) {
@@ -344,7 +344,7 @@ class DeckReader {
   /// Returns whether a line of case control names a node: GROUNDCHECK(GRID=17) or PARAM,GRDPNT,17.
   [[nodiscard]] bool names_grid_point(std::string_view line) const {
     std::string_view last;
-    for (std::string_view word; !(word = next_word(line, " \t,=()")).empty(); last = word) {
+    for (std::string_view word; !(word = next_word(line, ",=()")).empty(); last = word) {
       const bool is_point = same_but_for_case(last, "GRID") || same_but_for_case(last, "GRDPNT");
       if (is_point && deck_->nodes.find(number_of(word)) >= 0) return true;
     }
@@ -352,7 +352,7 @@ class DeckReader {
   }
 
   [[nodiscard]] bool names_items(std::string_view list) const {
-    for (std::string_view word; !(word = next_word(list, " \t,=")).empty();) {
+    for (std::string_view word; !(word = next_word(list, ",=")).empty();) {
       if (may_name(word)) return true;
     }
     return false;

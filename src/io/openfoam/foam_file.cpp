@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/openfoam/foam_file.hpp"
 
+#include "base/text.hpp"
 #include "io/stream/byte_order.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/stream/scanner.hpp"
@@ -23,7 +24,7 @@ constexpr std::int64_t kMostAlike = 1 << 20;
 constexpr std::string_view kMarks = "(){};";
 constexpr std::string_view kFormatRemedy = "correct `format` in the header, or write the file again";
 
-bool is_space(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+bool is_space(char c) { return is_blank(c) || c == '\n' || c == '\r'; }
 bool is_mark(char c) { return kMarks.find(c) != std::string_view::npos; }
 /// Returns whether this character ends a number or word; a slash may begin a comment.
 bool is_end(char c) { return is_space(c) || is_mark(c) || c == '/'; }

@@ -3,7 +3,6 @@
 #include "io/stream/regular_text.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <charconv>
 #include <cstring>
@@ -148,19 +147,6 @@ RegularNumbers read_parts(std::string_view text, std::size_t count, std::size_t 
 }
 
 }  // namespace
-
-bool has_any_of(std::string_view text, std::string_view bytes) {
-  constexpr Offset kInCache = Offset{1} << 18;  // bytes
-  std::atomic<bool> found = false;
-  for_each_range(static_cast<Offset>(text.size()), kInCache, [&](Offset begin, Offset end) {
-    const std::string_view part =
-        text.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
-    for (const char byte : bytes) {
-      if (!found && part.find(byte) != std::string_view::npos) found = true;
-    }
-  });
-  return found;
-}
 
 std::size_t count_words(std::string_view text) {
   constexpr std::size_t kPartBytes = std::size_t{1} << 22;

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
+#include "base/text.hpp"
 #include "io/stream/regular_text.hpp"
 #include <meshorder/error.hpp>
 
@@ -55,9 +56,9 @@ void count_lines(std::string_view text, char comment, const Records& records, Te
     if (found != nullptr) ++part.lines;
     if (found != nullptr && line.ends_with('\r')) line.remove_suffix(1);
     if (has_returns && line.find('\r') != std::string_view::npos) part.has_other_ends = true;
-    const std::size_t word = records.may_be_blank ? 0 : line.find_first_not_of(" \t\f\v");
-    const bool is_comment = comment != '\0' && word < line.size() && line[word] == comment;
-    if (word != std::string_view::npos && !is_comment) ++part.record_lines;
+    if (!records.may_be_blank) line = trimmed(line);
+    const bool is_comment = comment != '\0' && line.starts_with(comment);
+    if (!is_comment && (records.may_be_blank || !line.empty())) ++part.record_lines;
     at = end + 1;
   }
 }

@@ -61,9 +61,6 @@ std::size_t read_regular_numbers(Scanner& in, std::span<Number> values) {
   return read.count;
 }
 
-/// Returns whether a text has any of these bytes; uses all threads. O(size of the text).
-bool has_any_of(std::string_view text, std::string_view bytes);
-
 /// Counts the words of a text on all threads. Every byte ≤ 0x20 separates words.
 std::size_t count_words(std::string_view text);
 

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/scanner.hpp"
 
+#include "base/text.hpp"
 #include "io/stream/text_ends.hpp"
 
 #include <algorithm>
@@ -11,7 +12,6 @@ namespace meshorder {
 namespace {
 
 bool is_line_end(char c) { return c <= '\r' && (c == '\n' || c == '\r'); }
-bool is_blank(char c) { return c <= ' ' && (c == ' ' || c == '\t' || c == '\f' || c == '\v'); }
 
 }  // namespace
 

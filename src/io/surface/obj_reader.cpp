@@ -184,8 +184,7 @@ void parse(Scanner& in, Line& line) {
 
 class Reader {
  public:
-  // a Scanner skips form feeds and vertical tabs, which belong to words here
-  explicit Reader(const FilePath& path) : scanner_(path), are_regular_(!has_any_of(scanner_.all(), "\f\v")) {}
+  explicit Reader(const FilePath& path) : scanner_(path) {}
 
   Mesh read() {
     while (scanner_.bytes_left() > 0) {
@@ -546,7 +545,7 @@ class Reader {
   }
 
   Scanner scanner_;
-  bool are_regular_;         // the next lines may be parsed on all threads
+  bool are_regular_ = true;  // the next lines may be parsed on all threads
   std::vector<Line> lines_;  // lines that were parsed ahead
   Mesh mesh_;
   std::shared_ptr<ObjMetadata> metadata_ = std::make_shared<ObjMetadata>();

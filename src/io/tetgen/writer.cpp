@@ -29,7 +29,7 @@ bool refers_to_points(const FilePath& path) {
   while (!lines.empty()) {
     std::string_view rest = lines.substr(0, lines.find('\n'));
     lines.remove_prefix(std::min(rest.size() + 1, lines.size()));
-    const std::string_view word = next_word(rest, " \t\r");
+    const std::string_view word = next_word(rest, "\r");
     if (!word.empty() && word.front() != '#') return word == "0";
   }
   return false;

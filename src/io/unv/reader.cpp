@@ -258,7 +258,7 @@ class UnvReader {
   /// Returns what follows the last field on this line, with the blanks before it.
   [[nodiscard]] std::string_view after_fields() const {
     const std::string_view before = in_.all().substr(0, static_cast<std::size_t>(in_.byte()));
-    return line_from(before.find_last_not_of(" \t") + 1);
+    return line_from(before.find_last_not_of(" \t\f\v") + 1);
   }
 
   void expect_more(std::string_view what) {

@@ -153,7 +153,7 @@ std::vector<std::int64_t> local_systems(std::string_view text) {
     for (std::size_t row = 0; row < 4; ++row) {
       std::string_view rest = lines[k + 2 + row];
       for (std::size_t column = 0; column < 3; ++column) {
-        std::string word(next_word(rest, " \t\r"));
+        std::string word(next_word(rest, "\r"));
         std::replace_if(
             word.begin(), word.end(), [](char c) { return c == 'D' || c == 'd'; }, 'e');
         double value = 0;

@@ -23,7 +23,7 @@
 namespace meshorder::vega {
 namespace {
 
-constexpr std::string_view kSeparators = " \t,";
+constexpr std::string_view kMarks = ",";
 
 std::string_view without_comment(std::string_view line) { return line.substr(0, line.find('#')); }
 
@@ -143,7 +143,7 @@ class Reader {
     VegaSection section;
     section.comments = lines_.take_comments();
     std::string_view name = line;
-    const std::string keyword(next_word(name, " \t"));
+    const std::string keyword(next_word(name));
     const std::string title(trimmed(name));
     if (same_but_for_case(keyword, "*VERTICES")) {
       section.kind = Kind::vertices;
@@ -195,13 +195,13 @@ class Reader {
   }
 
   std::string_view required_word(std::string_view& line, std::string_view what) {
-    const std::string_view word = next_word(line, kSeparators);
+    const std::string_view word = next_word(line, kMarks);
     if (word.empty()) lines_.at().fail("unexpected end of line; expected " + std::string(what), "add it");
     return word;
   }
 
   void expect_line_end(std::string_view line, const std::string& what) {
-    const std::string_view word = next_word(line, kSeparators);
+    const std::string_view word = next_word(line, kMarks);
     if (!word.empty()) {
       lines_.at().fail("'" + std::string(word.substr(0, 40)) + "' follows " + what, "remove it");
     }
@@ -238,7 +238,7 @@ class Reader {
     return header;
   }
 
-  static std::string_view trimmed_all(std::string_view line) { return next_word(line, kSeparators); }
+  static std::string_view trimmed_all(std::string_view line) { return next_word(line, kMarks); }
 
   /// Returns how many items of `width` numbers to reserve: no more than the rest of this file can hold.
   std::size_t reservable(Index count, int width) {
@@ -286,12 +286,8 @@ class Reader {
     }
   }
 
-  /// Returns whether there are no attributes, markers, form feeds or vertical tabs. A Scanner skips the last
-  /// two, which are errors here.
-  bool is_plain(const Header& header) {
-    const bool has_columns = header.columns != decltype(header.columns){};
-    return !has_columns && !has_any_of(lines_.at().all(), "\f\v");
-  }
+  /// Returns whether there are no attributes and markers.
+  static bool is_plain(const Header& header) { return header.columns == decltype(header.columns){}; }
 
   /// Reads vertices on all threads, up to the first line that does not have the next number or holds anything
   /// but numbers. Returns how many it read.
@@ -342,7 +338,7 @@ class Reader {
     has_elements_ = true;
     lines_.take();
     std::string_view word = data_line("the type of the elements");
-    const std::string type(next_word(word, kSeparators));
+    const std::string type(next_word(word, kMarks));
     const bool tets = same_but_for_case(std::string_view(type).substr(0, 3), "TET");
     if (!tets && !same_but_for_case(std::string_view(type).substr(0, 5), "CUBIC")) {
       lines_.at().fail("elements of type '" + type.substr(0, 40) + "'", "TET and CUBIC are possible");
@@ -411,8 +407,7 @@ class Reader {
     while (lines_.peek(line) && line.front() != '*') {
       lines_.take_comments();
       line = without_comment(line);
-      for (std::string_view word = next_word(line, kSeparators); !word.empty();
-           word = next_word(line, kSeparators)) {
+      for (std::string_view word = next_word(line, kMarks); !word.empty(); word = next_word(line, kMarks)) {
         const auto id = parse_integer<std::int64_t>(lines_.at(), word, "an element of set '" + name + "'");
         set.members.push_back(find(elements_, id, "element"));
       }
@@ -453,8 +448,7 @@ class Reader {
     read_lines(section);
     for (const std::string& text : section.lines) {
       std::string_view line = text;
-      for (std::string_view word = next_word(line, kSeparators); !word.empty();
-           word = next_word(line, kSeparators)) {
+      for (std::string_view word = next_word(line, kMarks); !word.empty(); word = next_word(line, kMarks)) {
         if (word.find_first_not_of("+-0123456789") != std::string_view::npos) continue;
         throw InputError(Location{file, where, -1},
                          "the section " + title.substr(0, 60) +
