@@ -678,6 +678,21 @@ TEST(VtkLegacy, CutFilesAreNoticed) {
   }
 }
 
+TEST(VtkLegacy, PassesOverZeroBytesAndBlanksAfterBinaryData) {
+  const TemporaryFolder folder;
+  write_mesh(tetrahedral_bar(1), folder.path() / "bar.vtk");
+  const auto grid = read_with_vtk<vtkUnstructuredGridReader>(folder.path() / "bar.vtk");
+  for (const int version : {42, 51}) {
+    write_with_vtk(grid, folder.path() / "e.vtk", true, version);
+    const Mesh expected = read_mesh(folder.path() / "e.vtk");
+    const std::string content = content_of(folder.path() / "e.vtk");
+    for (const std::string_view padding : {std::string_view("\0", 1), std::string_view("\n\0\0 \n\0", 6),
+                                           std::string_view("\x1A"), std::string_view("\n \f\r\n")})
+      expect_same(read_mesh(folder.file("padded.vtk", content + std::string(padding))), expected);
+    EXPECT_NE(read_error(folder.file("more.vtk", content + std::string("\0\0CELLS", 7))), "");
+  }
+}
+
 TEST(VtkLegacy, DamagedFilesGiveAMeshOrAnError) {
   const TemporaryFolder folder;
   const auto grid = grid_with_everything();

@@ -1,17 +1,19 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/text_ends.hpp"
 
+#include "base/text.hpp"
+
 namespace meshorder {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\f\v";
 constexpr std::string_view kLineEnds = "\r\n";
+constexpr std::string_view kAfterText("\0\x1A \t\f\v\r\n", 8);
 
 /// Returns the first position ≥ `from` of a byte that is neither blank nor line end; else the size of the
 /// text.
 std::size_t first_mark(std::string_view text, std::size_t from) {
-  while (from < text.size() && (kBlanks.find(text[from]) != std::string_view::npos ||
-                                kLineEnds.find(text[from]) != std::string_view::npos)) {
+  while (from < text.size() &&
+         (is_blank(text[from]) || kLineEnds.find(text[from]) != std::string_view::npos)) {
     ++from;
   }
   return from;
@@ -39,10 +41,13 @@ std::string_view without_byte_order_mark(std::string_view text) {
 
 std::string_view without_padding(std::string_view text) {
   constexpr std::string_view kPadding("\0\x1A", 2);
-  constexpr std::string_view kAfterText("\0\x1A \t\f\v\r\n", 8);
   const std::size_t end = text.find_last_not_of(kAfterText) + 1;  // 0 if there is no other byte
   const std::string_view content = text.substr(0, text.find_first_of(kPadding, end));
   return content.find('\0') == std::string_view::npos ? content : text;
+}
+
+bool is_padding(std::string_view text) {
+  return text.find_first_not_of(kAfterText) == std::string_view::npos;
 }
 
 std::string comments_before(std::string_view text, char comment) {

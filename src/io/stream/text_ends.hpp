@@ -19,6 +19,9 @@ std::string_view without_byte_order_mark(std::string_view text);
 /// are binary.
 std::string_view without_padding(std::string_view text);
 
+/// Returns whether a text has nothing but zero bytes, Ctrl-Z, blanks and line ends.
+bool is_padding(std::string_view text);
+
 // Comments are kept for the writer.
 
 /// Returns verbatim all lines up to the last comment before the data; empty if no comment precedes the data.

@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "io/names.hpp"
 #include "io/stream/regular_text.hpp"
+#include "io/stream/text_ends.hpp"
 #include "io/vtk/legacy_input.hpp"
 #include "io/vtk/vtk.hpp"
 
@@ -31,7 +32,7 @@ class LegacyReader {
 
   Mesh read(Notes& notes) {
     read_header();
-    while (!in_.scanner.at_end()) read_section(in_.word("a keyword"));
+    while (!at_end()) read_section(in_.word("a keyword"));
     finish();
     notes.insert(notes.end(), in_.notes.begin(), in_.notes.end());
     return std::move(mesh_);
@@ -81,6 +82,13 @@ class LegacyReader {
     }
     layout_.polydata = kind == "polydata";
     in_.binary = mode == "binary";
+    if (in_.binary) in_.scanner.keep_padding();
+  }
+
+  /// Skips blanks and line ends; returns whether nothing but padding is left.
+  bool at_end() {
+    return in_.scanner.at_end() ||
+           is_padding(in_.scanner.all().substr(static_cast<std::size_t>(in_.scanner.byte())));
   }
 
   void read_section(std::string_view name) {
