@@ -28,7 +28,7 @@ class Update:
     Attributes:
         permutation: from the present places of the rows; moves nothing if ``repair`` is "none".
         repair: how the order was found: "none"; "carried": present vertices keep their order, new ones come next to their
-            neighbours; "warm": computed again from the last Fiedler vector; "fresh": computed again.
+            neighbours or last; "warm": computed again from the last Fiedler vector; "fresh": computed again.
         reason: why a new order was computed or not, a sentence.
         span_log2: distance of neighbours: the mean of ⌊log₂ span⌋ over the edges of a sample of the vertices; for points
             alone, the mean of log₂ (1 + places away from the curve). Compare it only with values of the same method.
