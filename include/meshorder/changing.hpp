@@ -103,8 +103,7 @@ class MESHORDER_API Reorderer {
   Update update(const GraphView& graph, const PointsView& points = {}, const IndexView& previous = {});
 
   /// The same for a mesh. Builds the mesh's graph only to compute an order anew, and not for `hilbert` and
-  /// `morton`. With these two, new vertices come last until `slack` is exceeded; then the points are sorted
-  /// anew: O(n + cells).
+  /// `morton`. With these two, the points are sorted anew whenever vertices are new: O(n + cells).
   Update update(const MeshView& mesh, const IndexView& previous = {});
 
   /// The same for points alone, such as particles, by `hilbert` or `morton`.

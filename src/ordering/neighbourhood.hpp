@@ -58,8 +58,7 @@ class GraphNeighbourhood : public Neighbourhood {
 /// or `is_read_forward`.
 class CellNeighbourhood : public Neighbourhood {
  public:
-  /// @param by_curve  the method is a curve, which needs no graph. New vertices have no neighbours then: to
-  ///                  find them costs more than the order
+  /// @param by_curve  the method is a curve, which needs no graph; `rows_of` then returns empty rows
   CellNeighbourhood(const CellArrays& cells, const PointsView& points, bool by_curve)
       : cells_(cells), points_(points), by_curve_(by_curve) {}
 

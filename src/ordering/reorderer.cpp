@@ -78,7 +78,8 @@ class Reorderer::Inside {
   /// Returns whether the budget allows another order without a start vector.
   [[nodiscard]] bool may_order() const { return memory_.fresh_seconds <= options_.budget_seconds; }
 
-  Update update(Neighbourhood& hood, const IndexView& previous) {
+  /// @param renews_for_new  whether new vertices are enough for a new order
+  Update update(Neighbourhood& hood, const IndexView& previous, bool renews_for_new = false) {
     const Stopwatch stopwatch;
     ReordererState next = memory_;
     const VertexChanges changes = changes_of(previous, hood.size(), memory_.count);
@@ -93,7 +94,9 @@ class Reorderer::Inside {
     next.begun = 1;
     next.count = hood.size();
     next.since = std::min(next.since + 1, kMaxIndex - 1);
-    update.reason = is_first ? "this is the first order" : reason_to_renew(hood, next, carried_span);
+    update.reason = is_first                             ? "this is the first order"
+                    : renews_for_new && update.added > 0 ? "vertices are new"
+                                                         : reason_to_renew(hood, next, carried_span);
     if (update.reason.empty()) {
       keep(update, std::move(carried), carried_span);
       update.reason = std::string(hood.near_enough()) + " as in the last fresh order";
@@ -254,8 +257,10 @@ Update Reorderer::update(const MeshView& mesh, const IndexView& previous) {
     const std::size_t n = vertex_count_of(mesh);
     const CellArrays cells = cell_arrays(mesh.cells, n, options.check);
     check_finite(mesh.points, n, options.check);
-    CellNeighbourhood hood(cells, mesh.points, inside_->by_curve() && inside_->may_order());
-    return inside_->update(hood, previous);
+    // a sort along a curve costs less than to find the neighbours of new vertices in all cells
+    const bool by_curve = inside_->by_curve() && inside_->may_order();
+    CellNeighbourhood hood(cells, mesh.points, by_curve);
+    return inside_->update(hood, previous, by_curve);
   });
 }
 

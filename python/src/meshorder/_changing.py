@@ -111,8 +111,8 @@ class Reorderer:
         Args:
             graph: a graph or matrix that `order` takes, in the present order of the arrays; or the cells of a mesh, as
                 ``{type: array}`` or ``[(type, array), …]`` with meshio's names of types; or None if there are only points,
-                such as particles. New vertices come next to their neighbours; those of cells in the order "hilbert" or
-                "morton" come last until ``slack`` is exceeded, and then the points are sorted anew.
+                such as particles. New vertices come next to their neighbours; by "hilbert" and "morton" the points of cells
+                are sorted anew instead.
             points: one row of one to three coordinates for each vertex, or None.
             previous: the place of each vertex after the last update, no place twice, −1 for a new vertex; None: the same
                 vertices in the same places.
