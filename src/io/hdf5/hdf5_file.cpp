@@ -230,6 +230,7 @@ void File::make_list(const std::string& path, std::span<const std::string> names
     H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
     H5Pset_link_phase_change(creation.id(), count, 0);
     H5Pset_est_link_info(creation.id(), count, static_cast<unsigned>(bytes / names.size()));
+    forget_times(creation);
   }
   make_group(path, creation);
 }
