@@ -59,7 +59,8 @@ struct MeshMethods {
 /// Vertices without neighbours come last, in their old order, except under `original` and registered methods.
 /// With `options.groups` the groups ascend, and the method orders each group.
 ///
-/// @param graph    n vertices (see `GraphView`); only fiedler and registered methods use the weights
+/// @param graph    n vertices (see `GraphView`); only fiedler, mdf and registered methods use the
+///                 weights
 /// @param method   name of a vertex method
 /// @param options  see `OrderOptions`
 /// @param points   n points for geometric methods (hilbert, morton); n or none for others, of which only
@@ -72,6 +73,7 @@ struct MeshMethods {
 /// @throws Stopped if the progress callback returned false
 /// @note Time of the methods:
 ///       - rcm and bfs: O(n + entries · log degree), with a copy of the graph;
+///       - mdf: O(n · degree² + entries · log n), with a copy of the graph;
 ///       - hilbert and morton: O(n log n);
 ///       - fiedler: O((n + entries) · iterations), with about six iterations;
 ///       - spectral: the time of fiedler times log n;

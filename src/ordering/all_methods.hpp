@@ -16,6 +16,7 @@ Order minla_vertices(const VertexInput&, const OrderOptions&);
 Order spectral_vertices(const VertexInput&, const OrderOptions&);
 Order rcm_vertices(const VertexInput&, const OrderOptions&);
 Order bfs_vertices(const VertexInput&, const OrderOptions&);
+Order mdf_vertices(const VertexInput&, const OrderOptions&);
 Order morton_vertices(const VertexInput&, const OrderOptions&);
 Order hilbert_vertices(const VertexInput&, const OrderOptions&);
 Order metis_nd_vertices(const VertexInput&, const OrderOptions&);

@@ -57,6 +57,8 @@ constexpr std::array kVertexMethods{
     BuiltInVertexMethod{"rcm", "reverse Cuthill-McKee: breadth first, neighbours by degree, reversed",
                         rcm_vertices, Traits{.made_for = Workload::bandwidth}},
     BuiltInVertexMethod{"bfs", "breadth first from a vertex at the rim", bfs_vertices},
+    BuiltInVertexMethod{"mdf", "from the rim, next the vertex that discards least fill: for IC(0) and ILU(0)",
+                        mdf_vertices},
     BuiltInVertexMethod{"morton", "along Morton's Z curve through the coordinates", morton_vertices,
                         kAlongCurve},
     BuiltInVertexMethod{"hilbert", "along Hilbert's curve through the coordinates", hilbert_vertices,
