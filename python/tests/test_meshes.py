@@ -168,8 +168,7 @@ def test_comparison_and_advice(mesh):
 def test_advice_measures_what_runs_within_seconds(mesh, monkeypatch):
     def is_measured(given, **options):
         advice = meshorder.advise(given, **options)
-        # on a busy machine there may be both
-        assert advice.as_is.measured or advice.as_is.predicted
+        assert advice.as_is.predicted  # also beside measured times: it decides if they are not reliable
         return bool(advice.as_is.measured)
 
     monkeypatch.delenv("MESHORDER_MACHINE", raising=False)
